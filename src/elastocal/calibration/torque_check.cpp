@@ -56,7 +56,7 @@ std::optional<TorqueLine> FitLine(const Pairs& pairs) {
                     .correlation = norm > 0.0 ? (x * y).sum() / norm : 0.0};
 }
 
-bool IsWithin(double slope, double factor) { return slope < factor && slope * factor > 1.0; }
+bool IsWithin(double ratio, double most) { return ratio < most && ratio * most > 1.0; }
 
 /// By joint, of those that follow statics.
 std::vector<std::optional<TorqueLine>> FollowingLines(const std::vector<Pairs>& pairs) {
@@ -180,11 +180,10 @@ bool AllReversed(const std::vector<Pairs>& pairs) {
 
 /// The factor that most sensors have in common, if it is far from one: masses of links are not off
 /// by that much.
-std::optional<double> CommonFactor(const std::vector<Pairs>& pairs) {
+std::optional<double> CommonFactor(const std::vector<std::optional<TorqueLine>>& lines) {
   std::vector<double> slopes;
-  for (const Pairs& of : pairs) {
-    const auto line = FitLine(of);
-    if (line && line->correlation > kFollows) slopes.push_back(line->slope);
+  for (const auto& line : lines) {
+    if (line) slopes.push_back(line->slope);
   }
   if (slopes.size() < kManySensors) return std::nullopt;
   const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
@@ -255,7 +254,8 @@ std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& mode
     return found;
   };
   if (AllReversed(pairs)) return all_are(TorqueContradiction::kReversed, -1.0);
-  if (const auto factor = CommonFactor(pairs))
+  const std::vector<std::optional<TorqueLine>> lines = FollowingLines(pairs);
+  if (const auto factor = CommonFactor(lines))
     return all_are(TorqueContradiction::kScaled, *factor);
   std::vector<char> exchanged(joints, 0);
   for (std::size_t a = 0; a < joints; ++a) {
@@ -269,7 +269,6 @@ std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& mode
       }
     }
   }
-  const std::vector<std::optional<TorqueLine>> lines = FollowingLines(pairs);
   for (int k = 0; k < static_cast<int>(joints); ++k) {
     if (exchanged[k] != 0) continue;
     const bool scaled = IsScaledAlone(model.tree, lines, k);

@@ -262,11 +262,11 @@ class FaultExplanation {
 
   /// Those, with the markers that are seen within these postures and beside them, whose
   /// displacement may look like faults of that kind.
-  std::vector<LabelCluster> MovableClusters(FaultKind kind, int begin, int end) const {
+  std::vector<LabelCluster> MovableClusters(FaultKind kind, int from, int to) const {
     std::vector<LabelCluster> clusters = SeenClusters(project_, general_.recording);
     const int count = general_.recording.posture_count();
     for (LabelCluster& cluster : clusters) {
-      std::erase_if(cluster.markers, [&](int m) { return !SeenWithin(m, begin, end); });
+      std::erase_if(cluster.markers, [&](int m) { return !SeenWithin(m, from, to); });
     }
     std::erase_if(clusters, [](const LabelCluster& one) { return one.markers.empty(); });
     std::vector<int> coordinates;
@@ -276,7 +276,7 @@ class FaultExplanation {
     clusters = ClustersBeside(coordinates, clusters, general_.model);
     for (LabelCluster& cluster : clusters) {
       std::erase_if(cluster.markers,
-                    [&](int m) { return !SeenWithin(m, 0, begin) && !SeenWithin(m, end, count); });
+                    [&](int m) { return !SeenWithin(m, 0, from) && !SeenWithin(m, to, count); });
     }
     std::erase_if(clusters, [](const LabelCluster& one) { return one.markers.empty(); });
     return clusters;

@@ -6,6 +6,7 @@
 
 #include "elastocal/calibration/options.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/recording.hpp"
 
 namespace elastocal {
