@@ -45,19 +45,32 @@ TEST(CompensateMotion, ClearancesAreThoseOfTheCalibratedRobot) {
   EXPECT_GT(naive, 16e-3);
 }
 
+/// TALOS with drawn errors, and a plan of its posture of rest.
+class AtRest {
+ public:
+  CompensatedMotion Compensate(const CompensateMotionOptions& options = {}) const {
+    return CompensateMotion(project_, model_, plan_, options);
+  }
+  /// A joint cannot leave its planned position.
+  void Hold(const char* joint) {
+    const Eigen::Index c =
+        project_.tree.joints[static_cast<std::size_t>(FindJoint(project_.tree, joint))].coordinate;
+    model_.lower[static_cast<std::size_t>(c)] = plan_.q(0, c);
+    model_.upper[static_cast<std::size_t>(c)] = plan_.q(0, c);
+  }
+
+ private:
+  Project project_ = ReadProject(SourceFile("models/talos/project.yaml"));
+  RuntimeModel model_ =
+      MakeRuntimeModel(project_, RandomCalibration(project_, 1), RuntimeContent::kEverything);
+  JointMotion plan_{.source = {}, .time_s = {}, .q = project_.motion.rest.transpose()};
+};
+
 TEST(CompensateMotion, ARefusalNamesTheJointThatStopsAtItsLimit) {
-  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
-  RuntimeModel model =
-      MakeRuntimeModel(project, RandomCalibration(project, 1), RuntimeContent::kEverything);
-  JointMotion plan;
-  plan.q = project.motion.rest.transpose();
-  const auto knee = static_cast<std::size_t>(std::distance(
-      model.coordinate_names.begin(),
-      std::find(model.coordinate_names.begin(), model.coordinate_names.end(), "leg_left_4_joint")));
-  ASSERT_LT(knee, model.lower.size());
-  EXPECT_TRUE(CompensateMotion(project, model, plan).broken.empty());
-  model.lower[knee] = model.upper[knee] = plan.q(0, static_cast<Eigen::Index>(knee));
-  const CompensatedMotion result = CompensateMotion(project, model, plan, {.most_left_m = 1e-3});
+  AtRest talos;
+  EXPECT_TRUE(talos.Compensate().broken.empty());
+  talos.Hold("leg_left_4_joint");
+  const CompensatedMotion result = talos.Compensate({.most_left_m = 1e-3});
   ASSERT_EQ(result.broken.size(), 2U);
   EXPECT_NE(
       result.broken[1].find("mm are left at the end of leg_left at 0.00 s, more than 1.00 mm"),
@@ -70,17 +83,9 @@ TEST(CompensateMotion, ARefusalNamesTheJointThatStopsAtItsLimit) {
 
 // Less than what is asked is a warning that names the limb, and the motion is played.
 TEST(CompensateMotion, WhatLimitsLeaveIsSaidAndNotRefused) {
-  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
-  RuntimeModel model =
-      MakeRuntimeModel(project, RandomCalibration(project, 1), RuntimeContent::kEverything);
-  JointMotion plan;
-  plan.q = project.motion.rest.transpose();
-  const Eigen::Index knee =
-      project.tree.joints[static_cast<std::size_t>(FindJoint(project.tree, "leg_left_4_joint"))]
-          .coordinate;
-  model.lower[static_cast<std::size_t>(knee)] = plan.q(0, knee);
-  model.upper[static_cast<std::size_t>(knee)] = plan.q(0, knee);
-  const CompensatedMotion result = CompensateMotion(project, model, plan, {.most_left_m = 0.05});
+  AtRest talos;
+  talos.Hold("leg_left_4_joint");
+  const CompensatedMotion result = talos.Compensate({.most_left_m = 0.05});
   EXPECT_TRUE(result.broken.empty());
   ASSERT_EQ(result.warnings.size(), 1U);
   EXPECT_EQ(result.warnings[0].find("stopped by a joint's limit: leg_left_4_joint ("), 0U);
