@@ -236,6 +236,7 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   const int hip = FindJoint(robot_.project.tree, "leg_left_2_joint");
   const auto only = [&](const Recording& recording, int joint, TorqueContradiction kind) {
     const auto found = FindContradictoryTorques(robot_.model, recording, 1e-3);
+    ASSERT_FALSE(found.empty());
     ASSERT_EQ(found.size(), 1u) << Describe(found.front(), robot_.project.tree);
     EXPECT_EQ(found[0].joint, joint);
     EXPECT_EQ(static_cast<int>(found[0].kind), static_cast<int>(kind));
