@@ -28,7 +28,7 @@ double Length(const Project& project, int marker, int other) {
       .norm();
 }
 
-TEST(Draft, TalosHasTheLimbsOfItsHandWrittenProject) {
+TEST(DraftStudy, TalosHasTheLimbsOfItsHandWrittenProject) {
   const ScratchFolder folder;
   const Project drafted = ReadBack(DraftFile("models/talos/talos.urdf"), folder);
   const Project written = ReadProject(SourceFile("models/talos/project.yaml"));

@@ -164,7 +164,7 @@ TEST(CertifyBoundStudy, HoldsForEverySetThatOtherSeedsFind) {
   }
 }
 
-TEST(AssessPostures, FindsTheRepeatedPostureAndAnAddition) {
+TEST(AssessPosturesStudy, FindsTheRepeatedPostureAndAnAddition) {
   LegProblem leg;
   PostureSet set = Nocp(leg.problem, 1, Quick()).set;
   const int size = set.size();
