@@ -13,6 +13,11 @@ namespace {
 
 constexpr int kOpen = -1;  // the order of labels is not known from the frame itself
 
+// Where distances are too much alike, labels that are exchanged for a moment show by their jumps.
+constexpr double kSamePlace = 0.3;        // of the cluster's least distance: no other marker
+constexpr double kNoTimeToTurn_s = 0.1;   // from one frame to the next
+constexpr double kLongestExchange_s = 2;  // between two jumps: beyond, one in between was not seen
+
 // What to do with a cluster, frame by frame.
 struct Plan {
   std::vector<int> order;                  // index into the shape's permutations, or kOpen
@@ -57,6 +62,7 @@ class LabelFinder {
   Plan Find() const {
     Plan plan(trajectories_.frame_count(), shape_.size);
     DecideWholeFrames(plan);
+    if (ambiguous_) FindJumps(plan);
     // For undecided frames, the orders of the nearest decided frames.
     std::vector<int> after(plan.order.size(), kOpen);
     for (std::size_t i = plan.order.size(); i-- > 0;) {
@@ -91,6 +97,47 @@ class LabelFinder {
       plan.undecided[frame] = order > 0 && ambiguous_;
       if (!plan.undecided[frame]) plan.order[frame] = order;
     }
+  }
+
+  // Finds frames before which the markers jump to each other's places, and after which they jump
+  // back.
+  void FindJumps(Plan& plan) const {
+    const int longest_pause =
+        std::max(1, static_cast<int>(kNoTimeToTurn_s * trajectories_.rate_hz));
+    const int longest_exchange = static_cast<int>(kLongestExchange_s * trajectories_.rate_hz);
+    int seen = kOpen, jumped = kOpen;  // the last frames in which all are seen, or after a jump
+    for (int frame = 0; frame < trajectories_.frame_count(); ++frame) {
+      if (!table_.row(frame).allFinite()) continue;
+      if (seen != kOpen && frame - seen <= longest_pause && Jump(seen, frame)) {
+        const bool back = jumped != kOpen && frame - jumped <= longest_exchange;
+        for (int k = jumped; back && k < frame; ++k) {
+          plan.undecided[k] = true;
+          plan.order[k] = kOpen;
+        }
+        jumped = back ? kOpen : frame;
+      }
+      seen = frame;
+    }
+  }
+
+  // Whether each marker of a frame is where one was in an earlier frame, and not each where it was
+  // itself.
+  bool Jump(int before, int frame) const {
+    const double near = kSamePlace * shape_.distances.minCoeff();
+    const auto is_where = [&](int now, int earlier) {
+      return (trajectories_.positions.block<1, 3>(frame, 3 * markers_[now]) -
+              trajectories_.positions.block<1, 3>(before, 3 * markers_[earlier]))
+                 .norm() < near;
+    };
+    bool jumped = false;
+    for (int now = 0; now < shape_.size; ++now) {
+      if (is_where(now, now)) continue;
+      int place = 0;
+      while (place < shape_.size && !is_where(now, place)) ++place;
+      if (place == shape_.size) return false;
+      jumped = true;
+    }
+    return jumped;
   }
 
   // Decides on a frame with hidden or outlying markers, by the orders of the frames around it and

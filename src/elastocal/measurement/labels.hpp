@@ -67,7 +67,9 @@ struct ClusterLabels {
 /// a marker is hidden, the order of the nearest frames before and after is taken, if it fits. If no
 /// order fits, the one marker without which the others fit is removed. If there are several such
 /// markers, all of these are removed; if there is none, or if two orders fit, the whole cluster is.
-/// Clusters of one marker are skipped. Time is linear in the number of frames.
+/// Clusters of one marker are skipped. In an ambiguous cluster, frames between two jumps of markers
+/// to each other's places, at most 2 s apart, look exchanged even where their distances fit. Time
+/// is linear in the number of frames.
 ///
 /// Throws std::invalid_argument for a marker out of range or listed twice in a cluster.
 std::vector<ClusterLabels> CorrectLabels(const std::vector<LabelCluster>& clusters,

@@ -195,19 +195,30 @@ TEST(CorrectLabels, RemovesWhatItCannotPutRight) {
   places.col(2) << 0.030, 0.0645, 0.0295;  // isosceles: 0 and 1 look alike
   MarkerTrajectories trajectories = Move(places, 2000);
   Exchange(trajectories, 0, 2, {500, 600});
-  Exchange(trajectories, 0, 1, {800, 900});
+  Exchange(trajectories, 0, 1, {800, 900});  // shows by its jumps alone
+  HideFrames(trajectories, 2, {850, 860});
   MarkerTrajectories expected = trajectories;
   expected.positions.middleRows(500, 100).setConstant(kNaN);
+  expected.positions.middleRows(800, 100).setConstant(kNaN);
   const auto labels = CorrectLabels(kThree, {}, trajectories);
   EXPECT_TRUE(labels[0].ambiguous);
   EXPECT_TRUE(labels[0].swaps.empty() && labels[0].outliers.empty());
-  EXPECT_EQ(labels[0].undecided, (std::vector<FrameInterval>{{500, 600}}));
+  EXPECT_EQ(labels[0].undecided, (std::vector<FrameInterval>{{500, 600}, {800, 900}}));
   ExpectSame(trajectories, expected);
 
   // Its outliers are removed all the same.
   trajectories.positions(1500, 8) += 0.05;
   EXPECT_FALSE(CorrectLabels(kThree, {}, trajectories)[0].outliers.empty());
   EXPECT_TRUE(std::isnan(trajectories.positions(1500, 8)));
+}
+
+TEST(CorrectLabels, LeavesAJumpWithoutAWayBack) {
+  MarkerTrajectories trajectories = Move(Triangle().leftCols(2), 2000);
+  Exchange(trajectories, 0, 1, {800, 1100});  // 3 s: which of the parts is exchanged nobody can say
+  const MarkerTrajectories given = trajectories;
+  const auto labels = CorrectLabels({{"two", {0, 1}}}, {}, trajectories);
+  EXPECT_TRUE(labels[0].undecided.empty());
+  ExpectSame(trajectories, given);
 }
 
 TEST(CorrectLabels, TakesClustersOfAnySize) {

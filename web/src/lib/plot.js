@@ -8,6 +8,7 @@ import {legend} from './legend.js';
 import {onTheme} from './theme.js';
 
 const FONT = '12px system-ui, sans-serif';
+const WHOLE = [0, 1, 2, 3].flatMap((digits) => [1, 2, 5].map((step) => step * 10 ** digits));  // steps of an axis that counts
 
 function axis(label, extra = {}) {
   const colour = cssColour('--muted');
@@ -79,7 +80,7 @@ function onKey(event, u, reset) {
 }
 
 /**
- * A plot of columns against a common x. `options`: {x: {label, short, log, time}, y: {label, min, log},
+ * A plot of columns against a common x. `options`: {x: {label, short, log, whole}, y: {label, min, log},
  * series: [{text, colour, dots, dashed, steps}], data: [x, y1, ...], bands, height, label}.
  * It keeps its height from the beginning, follows the width of the page, and draws itself anew in
  * the colours of the theme.
@@ -101,7 +102,7 @@ export function plot(options) {
       width, height, legend: {show: false}, cursor: {drag: {x: true, y: false}, points: {size: 7}},
       scales: {x: {time: false, distr: options.x.log ? 3 : 1},
                y: {distr: options.y.log ? 3 : 1, range: options.y.range}},
-      axes: [axis(options.x.label, {size: 30}), axis(options.y.label, {size: 52})],
+      axes: [axis(options.x.label, {size: 30, ...(options.x.whole && {incrs: WHOLE})}), axis(options.y.label, {size: 52})],
       series: [{}, ...series.map(seriesOptions)],
       plugins: options.bands ? [bandsPlugin(options.bands)] : [],
       hooks: {setCursor: [readout(values, settings)]},

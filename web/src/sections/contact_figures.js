@@ -26,7 +26,7 @@ export function touchPlots(contact) {
   const x = touches.map((_, i) => i + 1);
   const plates = [...new Set(touches.map((t) => t.plate))];
   const series = (names) => names.map((text, i) => ({text, colour: SERIES[i % SERIES.length], dots: 'only'}));
-  const axis = {label: 'Touch, in the order of the recording', short: 'touch'};
+  const axis = {label: 'Touch, in the order of the recording', short: 'touch', whole: true};
   const heights = plates.map((plate) => touches.map((t) => t.plate === plate ? t.height_mm : null));
   const bands = sessionBands(touches);
   return figure({

@@ -18,7 +18,7 @@ function curvesPlot(columns, chain, bound) {
     series.push({text: 'upper bound', colour: '#8a8f98', dashed: true});
     data.push(postures.map(() => bound));
   }
-  return plot({label: `O1 against the number of postures, ${chain}`, x: {label: 'number of postures', short: 'postures'},
+  return plot({label: `O1 against the number of postures, ${chain}`, x: {label: 'number of postures', short: 'postures', whole: true},
                y: {label: 'O1, median over seeds'}, series, data, height: 280});
 }
 
