@@ -54,7 +54,7 @@ class Using(unittest.TestCase):
                                           "--min-significance", 4, "--project", ARM).returncode, 0)
             self.assertEqual(here.read_bytes(), there.read_bytes(), name)
             self.assertTrue(any("is nominal" in note for note in notes), notes)
-        with self.assertRaisesRegex(elastocal.InputError, "urdf_rising"):
+        with self.assertRaisesRegex(elastocal.InputError, "one of c99, .* was expected; did you mean .urdf_rising"):
             elastocal.export(self.folder / "out", "urdf_risin", self.folder / "none", project=ARM)
         self.assertFalse((self.folder / "none").exists())
 

@@ -2,9 +2,13 @@
 // The command `batch` as its users run it: once, again, after an interruption, and under mpirun.
 
 #include <cstdlib>
+#include <string>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/report/page.hpp"
@@ -72,6 +76,21 @@ TEST_F(Batch, IsDoneOnceAndTheSameInWhateverOrder) {
   EXPECT_EQ(fs::last_write_time(Folder("two") + "/arm_2/calibration.yaml"), made);
   EXPECT_TRUE(fs::exists(Folder("two") + "/arm_3.done.json"));
   EXPECT_EQ(Read("one", "prior/covariance.csv"), Read("two", "prior/covariance.csv"));
+}
+
+TEST_F(Batch, TwoInOneFolderAreRefused) {
+  fs::create_directory(Folder("shared"));
+  const std::string file = scratch_.Write("shared/.batch.lock", "4711\n");
+  const int other = open(file.c_str(), O_RDWR);
+  ASSERT_EQ(flock(other, LOCK_EX), 0);
+  const ProgramResult second = Run("shared");
+  EXPECT_EQ(second.exit_code, 3);
+  EXPECT_NE(second.err.find("another batch (process 4711) is at work in this folder"),
+            std::string::npos)
+      << second.err;
+  EXPECT_FALSE(fs::exists(Folder("shared") + "/arm_1.log"));
+  close(other);
+  EXPECT_EQ(Run("shared").exit_code, 0);  // a lock that nobody holds any more is none
 }
 
 TEST_F(Batch, ThePriorOfAFleetServesTheNextRobot) {

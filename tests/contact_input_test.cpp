@@ -104,7 +104,10 @@ TEST_F(ObservationTableInput, SaysWhatIsWrong) {
   ExpectInputError([&] { Read(degrees); }, {"t.csv:2: ", "degrees; radians were expected"});
   ExpectInputError([&] { Read(fine, "", ""); }, {"note", "recording.ignore"});
   ExpectInputError([&] { Read(fine, ", sessions: {column: start}"); }, {"'start'", "sessions"});
-  ExpectInputError([&] { Read(fine, ", plate_column: note", ""); }, {"t.csv:2: ", "no plate 'a'"});
+  ExpectInputError([&] { Read(fine, ", plate_column: note", ""); },
+                   {"t.csv:2: ", "no plate 'a'; known: left"});
+  ExpectInputError([&] { Read(replaced(",a\n", ",\n"), ", sessions: {column: note}"); },
+                   {"t.csv:4: ", "'note'", "there is no session"});
   ExpectInputError([&] { Read(fine.substr(0, fine.find('\n') + 1)); }, {"no row"});
   ExpectInputError(
       [&] {
@@ -122,6 +125,17 @@ TEST_F(ObservationTableInput, SaysWhatIsWrong) {
                                         "recording: {ignore: [note]}\n"));
       },
       {"no plate lies flat"});
+}
+
+TEST_F(ObservationTableInput, AMistypedSessionIsNamed) {
+  std::string text = TableText(project_, 3);
+  for (const char* name : {"monday", "monday", "mondy"}) {
+    text.replace(text.find(",a\n") + 1, 1, name);
+  }
+  const std::vector<std::string> warnings = Read(text, ", sessions: {column: note}", "").warnings;
+  const std::string expected =
+      "one row alone is of session 'mondy' (contact.sessions.column); did you mean 'monday'?";
+  EXPECT_NE(warnings.back().find(expected), std::string::npos) << warnings.back();
 }
 
 TEST_F(ObservationTableInput, RepeatedRowsAreNamed) {
@@ -174,6 +188,14 @@ TEST_F(ObservationTableInput, APlateUpsideDownIsNamed) {
             3);
   ExpectInputError([&] { ReadObservationTables({file_}, ProjectOf(contact("-1"), ignore)); },
                    {"plate 'p' lies upside down in 3 of 3 postures"});
+  std::string named = TableText(project_, 3);
+  for (std::size_t at = 0; (at = named.find(",a\n", at)) != std::string::npos;) named[at + 1] = 'p';
+  std::ofstream(file_) << named;
+  const std::string column = ", plate_column: note";
+  EXPECT_EQ(ReadObservationTables({file_}, ProjectOf(contact("1") + column)).observations.count(),
+            3);
+  ExpectInputError([&] { ReadObservationTables({file_}, ProjectOf(contact("-1") + column)); },
+                   {"plate 'p' lies upside down in 3 of 3 touches"});
 }
 
 TEST_F(ObservationTableInput, SessionsAreToldByCountsOfEncoders) {
@@ -347,6 +369,7 @@ TEST(InstrumentInput, TheTableSaysWhatIsWrong) {
   error("0.2,0.1,9.8", "0.02,0.01,5", {"t.csv:2: ", "at rest"});
   error("1,2,3", "1000,2000,3000", {"t.csv:2: ", "bx", "in mm?"});
   error("1,2,3", "1,x,3", {"t.csv:2: ", "by", "'x'"});
+  error(",1.5,a", ",-1.5,a", {"t.csv:2: ", "'wire'", "opposite sign"});
   error("hand_qw", "hand_w", {"hand_w"});
   error("hand_qw,", "note,", {"hand_qw"});
   std::ofstream(file) << TableText(project, 3);
@@ -396,6 +419,9 @@ recording: {ignore: [note]}
     ExpectInputError([&] { read(fine, from, to); }, messages);
   };
   error("f1,7,0", "f1,pale,0", {"corners.csv:2: ", "'tag'", "did you mean 'pole'?"});
+  error("f1,7,0", "f1,8,0", {"corners.csv:2: ", "no tag '8'; known: 7, pole"});
+  error("1,2\nf1,7,1,3,4\nf1,7,2,5,6\nf1,7,3,7,8",
+        "0.1,0.2\nf1,7,1,0.3,0.2\nf1,7,2,0.3,0.3\nf1,7,3,0.1,0.3", {"corners.csv", "from 0 to 1"});
   error("f1,7,1", "f1,7,0", {"corners.csv:3: ", "comes twice"});
   error("f1,7,1", "f1,7,4", {"corners.csv:3: ", "0, 1, 2 or 3"});
   error("f1,7,3,7,8\n", "", {"corners.csv:2: ", "not all of its four corners"});

@@ -57,7 +57,7 @@ TEST(TouchesInTheAir, AreLeftOutOrObjectedTo) {
   above[4] = above[9] = 0.02;
   few.observations = SimulateTouches(few.model, truth, 40, 1, kNoiseOfTouches, random, above);
   EXPECT_TRUE(LeaveOutTouchesInTheAir(few));
-  EXPECT_EQ(few.mostly_air, "");
+  EXPECT_EQ(few.wrong_rows, "");
   EXPECT_EQ(few.observations.count(), 38);
   ASSERT_EQ(few.warnings.size(), 1u);
   EXPECT_EQ(few.warnings[0].find("2 of 40 touches seem to be none: "), 0u) << few.warnings[0];
@@ -68,7 +68,8 @@ TEST(TouchesInTheAir, AreLeftOutOrObjectedTo) {
   for (std::size_t i = 0; i < 14; i += 2) above[i] = 0.02;
   many.observations = SimulateTouches(many.model, truth, 40, 1, kNoiseOfTouches, random, above);
   EXPECT_TRUE(LeaveOutTouchesInTheAir(many));
-  EXPECT_EQ(many.mostly_air.find("8 of 40 touches seem to be none: "), 0u) << many.mostly_air;
+  EXPECT_EQ(many.wrong_rows.find("8 of 40 touches seem to be none: "), 0u) << many.wrong_rows;
+  EXPECT_NE(many.wrong_rows.find("all as high"), std::string::npos) << many.wrong_rows;
 }
 
 TEST(ObservedMistakes, APlateUpsideDownIsNamed) {

@@ -216,7 +216,8 @@ void CheckExportOptions(const ExportOptions& options) {
   std::vector<std::string> known;
   for (const ExportFormat& one : ExportFormats()) known.push_back(one.name);
   if (std::ranges::find(known, format) == known.end()) {
-    throw InputError("export format '" + format + "'" + DidYouMean(format, known));
+    throw InputError(fmt::format("export format '{}'; one of {} was expected{}", format,
+                                 fmt::join(known, ", "), DidYouMean(format, known)));
   }
   if (format == "mjcf" && options.mjcf.empty()) {
     throw InputError("format mjcf: the nominal model was expected (--mjcf FILE)");

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "elastocal/io/known_names.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
@@ -37,8 +38,8 @@ std::string NameIn(const Table& table, int column, const char* what,
                    const std::set<std::string>& known) {
   const std::string name(table.Cell(column));
   if (!known.contains(name)) {
-    table.FailCell(column, std::string("there is no ") + what + " " + Quote(name) +
-                               DidYouMean(name.substr(0, 60), known));
+    table.FailCell(column,
+                   std::string("there is no ") + what + " " + Quote(name) + Known(name, known));
   }
   return name;
 }
@@ -110,10 +111,16 @@ std::vector<Detection> ReadDetections(const std::filesystem::path& file, const P
     detection.pixels[2 * corner] = PixelIn(table, columns[kUColumn]);
     detection.pixels[2 * corner + 1] = PixelIn(table, columns[kVColumn]);
   }
+  const auto is_share = [](const Detection& of) {
+    return of.pixels.minCoeff() >= 0.0 && of.pixels.maxCoeff() <= 1.0;
+  };
   for (const Detection& detection : detections) {
     if (!detection.pixels.hasNaN()) continue;
     throw InputError(Place(file.string(), detection.line) + "the tag has not all of its four " +
                      "corners in this frame; all or none were expected");
+  }
+  if (!detections.empty() && std::all_of(detections.begin(), detections.end(), is_share)) {
+    table.Fail("u and v are from 0 to 1 in all rows, shares of the image; pixels were expected");
   }
   return detections;
 }

@@ -2,6 +2,7 @@
 #include "elastocal/io/measured_cells.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@ namespace {
 constexpr double kUnit = 1e-3;          // that a quaternion may be off
 constexpr double kGravityShare = 0.05;  // that an accelerometer may be off
 constexpr double kFarthest = 100.0;     // m: a large hall
+constexpr double kNearZero = 0.1;       // m: more than any zero is off
 
 void CheckMetres(const Table& table, const Instrument& instrument, const std::vector<int>& columns,
                  const Eigen::VectorXd& measured, int count) {
@@ -24,6 +26,14 @@ void CheckMetres(const Table& table, const Instrument& instrument, const std::ve
                                "metres were expected",
                                measured[i], instrument.rows()[0].name, instrument.name));
   }
+}
+
+/// A wire's length is over an unknown zero of some millimetres.
+void CheckLengthOfWire(const Table& table, int column, double length) {
+  if (length >= -kNearZero) return;
+  table.FailCell(column, fmt::format("{:g} m is no length of a wire; does the column have the "
+                                     "opposite sign?",
+                                     length));
 }
 
 void CheckQuaternion(const Table& table, const std::vector<int>& columns,
@@ -72,6 +82,9 @@ std::optional<Eigen::VectorXd> ReadMeasured(const Table& table, const Instrument
     CheckAtRest(table, columns, measured);
   } else {
     CheckMetres(table, instrument, columns, measured, std::min<int>(3, instrument.measured_size()));
+  }
+  if (instrument.kind() == std::string_view("wire")) {
+    CheckLengthOfWire(table, columns.front(), measured[0]);
   }
   const bool turns = rows.back().unit == SourceUnit::kRadian;  // measured as a quaternion
   if (turns) CheckQuaternion(table, columns, measured);

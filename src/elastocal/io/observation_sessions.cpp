@@ -3,9 +3,11 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
 
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/measurement/encoder_starts.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -37,6 +39,11 @@ void SessionReader::Take() {
   for (int column : columns_.sessions) {
     if (!key.empty()) key += "/";
     if (rule.quantum <= 0.0) {
+      if (IsGap(table_.Cell(column))) {
+        table_.FailCell(column,
+                        "there is no session (contact.sessions.column); the name of one "
+                        "was expected in every row");
+      }
       key += std::string(table_.Cell(column));
       continue;
     }
@@ -52,7 +59,24 @@ void SessionReader::Take() {
 
 std::vector<std::string> SessionReader::Sessions(const Eigen::MatrixXd& q,
                                                  std::vector<std::string>& warnings) const {
-  return columns_.sessions.empty() ? ByEncoders(q, warnings) : keys_;
+  if (columns_.sessions.empty()) return ByEncoders(q, warnings);
+  if (project_.contact->sessions.quantum <= 0.0) WarnOfLoneSessions(warnings);
+  return keys_;
+}
+
+void SessionReader::WarnOfLoneSessions(std::vector<std::string>& warnings) const {
+  std::map<std::string, int> rows;
+  for (const std::string& key : keys_) ++rows[key];
+  std::vector<std::string> others;
+  for (const auto& [key, count] : rows) {
+    if (count > 1) others.push_back(key);
+  }
+  for (const auto& [key, count] : rows) {
+    const std::string near = count == 1 ? DidYouMean(key.substr(0, 60), others) : "";
+    if (near.empty()) continue;
+    warnings.push_back(table_.source() + ": one row alone is of session " + Quote(key) +
+                       " (contact.sessions.column)" + near);
+  }
 }
 
 std::vector<std::string> SessionReader::ByEncoders(const Eigen::MatrixXd& q,

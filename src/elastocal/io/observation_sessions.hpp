@@ -20,7 +20,7 @@ class SessionReader {
       : table_(table), columns_(columns), project_(project) {}
 
   /// Takes the row read last. Throws InputError for what is no number of steps of
-  /// contact.sessions.counts.quantum.
+  /// contact.sessions.counts.quantum, and for a row without the name of its session.
   void Take();
 
   /// The session of each row, by a name that no other file has where the project does not say
@@ -31,6 +31,8 @@ class SessionReader {
                                     std::vector<std::string>& warnings) const;
 
  private:
+  /// Names of sessions that one row alone has, and that are near to others: mistyped.
+  void WarnOfLoneSessions(std::vector<std::string>& warnings) const;
   std::vector<std::string> ByEncoders(const Eigen::MatrixXd& q,
                                       std::vector<std::string>& warnings) const;
 

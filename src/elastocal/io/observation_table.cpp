@@ -7,6 +7,7 @@
 #include <set>
 
 #include "elastocal/io/detections.hpp"
+#include "elastocal/io/known_names.hpp"
 #include "elastocal/io/measured_cells.hpp"
 #include "elastocal/io/observation_columns.hpp"
 #include "elastocal/io/observation_sessions.hpp"
@@ -99,7 +100,7 @@ std::vector<int> NamedPlates(const ObservationFile& file, const ObservationSetup
     const auto found = std::find(names.begin(), names.end(), file.plates[i]);
     if (found == names.end()) {
       throw InputError(Place(file.postures.source, file.postures.line[i]) + "there is no plate " +
-                       Quote(file.plates[i]) + DidYouMean(file.plates[i].substr(0, 60), names));
+                       Quote(file.plates[i]) + Known(file.plates[i], names));
     }
     plates.push_back(static_cast<int>(found - names.begin()));
   }
@@ -109,7 +110,11 @@ std::vector<int> NamedPlates(const ObservationFile& file, const ObservationSetup
 /// The same as it lies, in rows in which no instrument shows anything.
 std::vector<int> PlatesOf(const ObservationFile& file, const Project& project,
                           const ObservationSetup& setup) {
-  if (!file.plates.empty()) return NamedPlates(file, setup);
+  if (!file.plates.empty()) {
+    std::vector<int> named = NamedPlates(file, setup);
+    CheckNamedPlates(project.tree, setup, file.postures.q, named, file.postures.source);
+    return named;
+  }
   std::vector<int> plates(file.postures.line.size(), -1);
   if (setup.plates.empty() || !project.contact->plate_column.empty()) return plates;
   std::vector<char> shown(plates.size(), 0);
@@ -241,6 +246,13 @@ std::vector<std::string> SilentInstruments(const ObservationTables& tables) {
   return warnings;
 }
 
+/// No table has the column that names plates, and other instruments hide that no touch is read.
+bool PlatesAreNamedNowhere(const std::vector<ObservationFile>& files, const Project& project) {
+  return !project.contact->setup.plates.empty() && !project.contact->plate_column.empty() &&
+         std::all_of(files.begin(), files.end(),
+                     [](const ObservationFile& file) { return file.plates.empty(); });
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> ObservationFiles(
@@ -321,6 +333,11 @@ ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>
   }
   if (std::string warning = repeated.Warning(); !warning.empty()) {
     tables.warnings.push_back(std::move(warning));
+  }
+  if (PlatesAreNamedNowhere(read, project)) {
+    tables.warnings.push_back("no table has the column " + Quote(project.contact->plate_column) +
+                              " (contact.plate_column), which names the plate that touches: no "
+                              "touch is read");
   }
   for (std::string& warning : SilentInstruments(tables)) {
     tables.warnings.push_back(std::move(warning));

@@ -30,6 +30,27 @@ Transform NominalRoot(const ObservationSetup& setup, const std::vector<Transform
   return PlaceRootOnFeet(feet).T_floor_root;
 }
 
+/// By plate the angle between its normal and the vertical by the nominal robot.
+std::vector<double> NominalTilts(const RobotTree& tree, const ObservationSetup& setup,
+                                 const Eigen::VectorXd& q) {
+  const std::vector<Transform> T = LinkTransforms(tree, q);
+  const Transform root = NominalRoot(setup, T);
+  std::vector<double> tilts;
+  for (const ContactPlate& plate : setup.plates) {
+    const double up = (root.linear() * T[plate.link].linear() * plate.face.R_link_face)(2, 2);
+    tilts.push_back(std::acos(std::clamp(up, -1.0, 1.0)));
+  }
+  return tilts;
+}
+
+InputError UpsideDown(const std::string& source, const std::string& plate, int upside,
+                      const std::string& of) {
+  return InputError(source + ": by nominal kinematics plate '" + plate + "' lies upside down in " +
+                    std::to_string(upside) + " of " + of +
+                    ": its normal points out of the table, contact.plates of the project says "
+                    "which way that is");
+}
+
 std::string Rounded(double value, const char* format) {
   char text[32];
   std::snprintf(text, sizeof text, format, value);
@@ -73,13 +94,7 @@ std::vector<int> FindTouchingPlates(const RobotTree& tree, const ObservationSetu
   Eigen::VectorXd least(q.rows());
   std::vector<int> flat(setup.plates.size(), 0), upside(setup.plates.size(), 0);  // postures
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
-    const std::vector<Transform> T = LinkTransforms(tree, Eigen::VectorXd(q.row(i)));
-    const Transform root = NominalRoot(setup, T);
-    std::vector<double> tilts;
-    for (const ContactPlate& plate : setup.plates) {
-      const double up = (root.linear() * T[plate.link].linear() * plate.face.R_link_face)(2, 2);
-      tilts.push_back(std::acos(std::clamp(up, -1.0, 1.0)));
-    }
+    const std::vector<double> tilts = NominalTilts(tree, setup, q.row(i));
     const auto flattest = std::min_element(tilts.begin(), tilts.end());
     touching.push_back(static_cast<int>(flattest - tilts.begin()));
     least[i] = *flattest;
@@ -92,11 +107,8 @@ std::vector<int> FindTouchingPlates(const RobotTree& tree, const ObservationSetu
   }
   for (std::size_t p = 0; p < setup.plates.size(); ++p) {
     if (upside[p] < kFewestUpside || upside[p] <= flat[p]) continue;
-    throw InputError(source + ": by nominal kinematics plate '" + setup.plates[p].name +
-                     "' lies upside down in " + std::to_string(upside[p]) + " of " +
-                     std::to_string(q.rows()) +
-                     " postures, in which no other lies as flat: its normal points out of the "
-                     "table, contact.plates of the project says which way that is");
+    throw UpsideDown(source, setup.plates[p].name, upside[p],
+                     std::to_string(q.rows()) + " postures, in which no other lies as flat");
   }
   if (Median(least) <= kFlat) return touching;
   throw InputError(
@@ -104,6 +116,23 @@ std::vector<int> FindTouchingPlates(const RobotTree& tree, const ObservationSetu
       Rounded(DegreesOf(Median(least)), "%.0f") + " degrees in the median" +
       "; plates within 20 degrees of level were expected (contact.plates and contact.feet of the "
       "project)");
+}
+
+void CheckNamedPlates(const RobotTree& tree, const ObservationSetup& setup,
+                      const Eigen::MatrixXd& q, const std::vector<int>& plates,
+                      const std::string& source) {
+  std::vector<int> touches(setup.plates.size(), 0), upside(setup.plates.size(), 0);
+  for (Eigen::Index i = 0; i < q.rows(); ++i) {
+    if (plates[Size(i)] < 0) continue;
+    const std::size_t plate = Size(plates[Size(i)]);
+    ++touches[plate];
+    if (M_PI - NominalTilts(tree, setup, q.row(i))[plate] <= kFlat) ++upside[plate];
+  }
+  for (std::size_t p = 0; p < touches.size(); ++p) {
+    if (upside[p] < kFewestUpside || 2 * upside[p] <= touches[p]) continue;
+    throw UpsideDown(source, setup.plates[p].name, upside[p],
+                     std::to_string(touches[p]) + " touches");
+  }
 }
 
 ClosureEvidence CheckClosure(const ObservedRobot& model, const Eigen::MatrixXd& q) {

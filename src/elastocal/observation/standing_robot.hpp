@@ -23,6 +23,12 @@ void PlaceFeet(const RobotTree& tree, const Eigen::MatrixXd& q, const std::vecto
 std::vector<int> FindTouchingPlates(const RobotTree& tree, const ObservationSetup& setup,
                                     const Eigen::MatrixXd& q, const std::string& source);
 
+/// Throws InputError where a plate lies upside down by nominal kinematics in most of its touches.
+/// `plates`: which one touches in each posture; -1: none.
+void CheckNamedPlates(const RobotTree& tree, const ObservationSetup& setup,
+                      const Eigen::MatrixXd& q, const std::vector<int>& plates,
+                      const std::string& source);
+
 /// Whether the closure of the feet says anything about the robot, in postures that are rows of q.
 struct ClosureEvidence {
   int postures = 0;

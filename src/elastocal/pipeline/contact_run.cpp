@@ -291,7 +291,8 @@ ContactRun CalibrateContacts(const Project& project,
       run.uncalibrated.held_out = {};
     }
   }
-  if ((!run.mistakes || run.mistakes->empty()) && LeaveOutTouchesInTheAir(run)) {
+  if ((!run.mistakes || run.mistakes->empty()) &&
+      (ExchangeSessions(run) || LeaveOutTouchesInTheAir(run))) {
     folds = std::min(folds, run.observations.posture_count());
     run.uncalibrated = Estimate(run.model, run.observations, false, options, folds);
   }

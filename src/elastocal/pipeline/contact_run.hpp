@@ -69,7 +69,9 @@ struct ContactRun {
   /// Mistakes in the tables, which are sought where the nominal robot is off by more than robots
   /// are (FindObservedMistakes). With one, nothing is left out: there is nothing to validate.
   std::optional<std::vector<std::string>> mistakes;
-  std::string mostly_air;  ///< objection to a table many of whose touches were none; usually empty
+  /// Objection to tables many of whose touches were none, or with rows of other sessions than they
+  /// say; usually empty.
+  std::string wrong_rows;
   ClosureEvidence closure;
   double gain_in_sds = 0.0;  ///< of calibrated on held-out (or the same) postures, see GainInSds
   CalibrationResult result;  ///< the parameters of the robot

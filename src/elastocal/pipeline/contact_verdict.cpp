@@ -159,6 +159,16 @@ void RemarkOnMountings(ContactRun& run) {
                                 share ? 1e2 * source.sd : unit.factor * source.sd));
     }
   }
+  // No source says how far the normal of a plate may be off: its tilts are estimated whatever they
+  // are.
+  constexpr double kFarTilt = 20.0 / kDegreeHere;
+  for (std::size_t p = 0; p < run.model.setup.plates.size(); ++p) {
+    const int tilts = run.model.setup.instruments[p]->quantities.front();
+    const double off = values[static_cast<std::size_t>(tilts)].x.norm();
+    if (!(off > kFarTilt)) continue;
+    far.push_back(fmt::format("the normal of plate '{}' by {:.3g} degrees",
+                              run.model.setup.plates[p].name, kDegreeHere * off));
+  }
   if (far.empty()) return;
   run.verdict.remarks.push_back(fmt::format(
       "far from where the project has it: {}. Is it the right one, and its axes, corners "
@@ -318,7 +328,7 @@ void JudgeContacts(ContactRun& run) {
     verdict.objections.emplace_back(
         "the estimate has not converged: variances did not come to rest");
   }
-  if (!run.mostly_air.empty()) verdict.objections.push_back(run.mostly_air);
+  if (!run.wrong_rows.empty()) verdict.objections.push_back(run.wrong_rows);
   const auto left_out = static_cast<double>(run.calibrated.estimate.outliers.size());
   if (left_out > kMostLeftOut * run.observations.count()) {
     verdict.objections.push_back(

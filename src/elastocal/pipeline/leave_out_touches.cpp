@@ -2,6 +2,8 @@
 #include "elastocal/pipeline/leave_out_touches.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -10,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/statistics.hpp"
 #include "elastocal/pipeline/off_alone.hpp"
 
 namespace elastocal {
@@ -25,6 +28,19 @@ std::string HeightsInWords(const std::vector<TouchInTheAir>& touches) {
   const std::string least = fmt::format("{:.2g}", 1e3 * low->height);
   const std::string most = fmt::format("{:.2g}", 1e3 * high->height);
   return least == most ? least : least + " to " + most;
+}
+
+/// Whether the touches lie on another plane, so far as a robot tells: those in the air are
+/// anywhere.
+bool AreAsHigh(const std::vector<TouchInTheAir>& touches) {
+  constexpr std::size_t kFewestOfAPlane = 4;
+  constexpr double kScatter = 0.25;  // of the height
+  std::vector<double> heights;
+  for (const TouchInTheAir& touch : touches) heights.push_back(touch.height);
+  if (heights.size() < kFewestOfAPlane) return false;
+  const double middle = Median(heights);
+  return std::all_of(heights.begin(), heights.end(),
+                     [&](double height) { return std::abs(height - middle) <= kScatter * middle; });
 }
 
 /// Touches of each plate that some observations have.
@@ -45,9 +61,10 @@ std::string DescribeTouchesInTheAir(const ObservedRobot& model, const Observatio
   for (const TouchInTheAir& touch : air) in_the_air.push_back(touch.observation);
   return fmt::format(
       "{} of {} touches seem to be none: by the others, the plate stood {} mm above its table in "
-      "{}",
+      "{}{}",
       air.size(), std::accumulate(touches.begin(), touches.end(), 0), HeightsInWords(air),
-      PlacesOf(in_the_air, observations));
+      PlacesOf(in_the_air, observations),
+      AreAsHigh(air) ? " (all as high: another table, or one that was moved?)" : "");
 }
 
 bool LeaveOutTouchesInTheAir(ContactRun& run) {
@@ -63,12 +80,35 @@ bool LeaveOutTouchesInTheAir(ContactRun& run) {
   const std::string text = DescribeTouchesInTheAir(run.model, run.observations, air);
   run.observations = std::move(without);
   if (many) {
-    run.mostly_air = text +
+    run.wrong_rows = text +
                      ". Record them again, or delete these rows if nothing was touched; touches "
                      "of another table belong into a file of their own";
   } else {
     run.warnings.push_back(text + "; left out: was there contact?");
   }
+  return true;
+}
+
+bool ExchangeSessions(ContactRun& run) {
+  const std::vector<OtherSession> found = FindExchangedSessions(run.model, run.observations);
+  if (found.empty()) return false;
+  std::map<std::pair<std::string, std::string>, std::vector<int>> places;  // by said, seen
+  for (const OtherSession& of : found) {
+    const auto first =
+        std::find_if(run.observations.all.begin(), run.observations.all.end(),
+                     [&](const Observation& one) { return one.posture == of.posture; });
+    places[{of.said, of.seen}].push_back(static_cast<int>(first - run.observations.all.begin()));
+  }
+  std::vector<std::string> texts;
+  for (const auto& [sessions, rows] : places) {
+    texts.push_back(fmt::format("{} of '{}' as if of '{}'", PlacesOf(rows, run.observations),
+                                sessions.first, sessions.second));
+  }
+  run.wrong_rows = fmt::format(
+      "{} of {} rows seem to be of another session (contact.sessions, or the file) than they say: "
+      "{}; so the robot leaves less than half as much (or was there no contact?)",
+      found.size(), run.observations.posture_count(), fmt::join(texts, "; "));
+  run.observations = InOtherSessions(found, run.observations);
   return true;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/observation/exchanged_sessions.hpp"
 #include "elastocal/observation/touches_in_the_air.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
 
@@ -16,7 +17,11 @@ std::string DescribeTouchesInTheAir(const ObservedRobot& model, const Observatio
 
 /// Leaves touches in the air (FindTouchesInTheAir) out of the observations; whether there were
 /// some. A few are a warning; where they are more than a quarter of a plate's touches, as of
-/// outliers, `mostly_air` is the objection: too few are left to tell which are right.
+/// outliers, `wrong_rows` is the objection: too few are left to tell which are right.
 bool LeaveOutTouchesInTheAir(ContactRun& run);
+
+/// Takes rows with the session of others (FindExchangedSessions) as of those; `wrong_rows` is the
+/// objection that names them. Whether there were some.
+bool ExchangeSessions(ContactRun& run);
 
 }  // namespace elastocal

@@ -248,6 +248,25 @@ TEST(BagsTest, FolderOfADatabaseIsOneRecording) {
   ExpectMadeBag(ReadRecordingFile(folder.path(), {}));
 }
 
+TEST(BagsTest, FolderIsComparedWithItsMetadata) {
+  const JointLog log = SomeLog();
+  const ScratchFolder folder;
+  folder.Write("bag_0.mcap", PieceOf(log, 0, 3));
+  const auto counted = [&](const char* count) {
+    folder.Write("metadata.yaml",
+                 Metadata("    - bag_0.mcap\n") +
+                     "  topics_with_message_count:\n    - topic_metadata: {name: /joint_states}\n"
+                     "      message_count: " +
+                     count + "\n");
+    return ReadRecordingFile(folder.path(), {}).notes.front();
+  };
+  EXPECT_EQ(counted("3").find("metadata.yaml"), std::string::npos);
+  EXPECT_NE(counted("8").find("3 messages; metadata.yaml states 8"), std::string::npos);
+  folder.Write("bag_1.mcap", PieceOf(log, 3, 5));
+  ExpectInputError([&] { ReadRecordingFile(folder.path(), {}); },
+                   {"metadata.yaml:5", "does not list", "bag_1.mcap", "`ros2 bag reindex`"});
+}
+
 TEST(BagsTest, FolderWithoutMetadataIsNamed) {
   const ScratchFolder folder;
   folder.Write("bag_1.db3", "");

@@ -28,6 +28,24 @@ constexpr std::size_t kStreamBlock = 1u << 18;
 
 constexpr const char* kMetadata = "metadata.yaml";
 
+/// Throws InputError for a file of the bag's kind beside those that metadata.yaml lists: what is in
+/// it would be missing.
+void RefuseUnlisted(const std::filesystem::path& folder,
+                    const std::vector<std::filesystem::path>& pieces, const YamlValue& list) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::filesystem::path& file = entry.path();
+    const auto is_piece = [&](const std::filesystem::path& piece) {
+      return piece.filename() == file.filename();
+    };
+    if (file.extension() != pieces.front().extension() || std::ranges::any_of(pieces, is_piece)) {
+      continue;
+    }
+    list.Fail("does not list " + file.string() +
+              "; a list of all files of the bag was expected (`ros2 bag reindex` writes one)");
+  }
+}
+
 /// The files of a bag, by the metadata.yaml in its folder.
 std::vector<std::filesystem::path> BagPieces(const std::filesystem::path& folder) {
   const std::filesystem::path metadata = folder / kMetadata;
@@ -48,6 +66,7 @@ std::vector<std::filesystem::path> BagPieces(const std::filesystem::path& folder
     pieces.push_back(std::move(piece));
   }
   if (pieces.empty()) list.Fail("found no file; one or more were expected");
+  RefuseUnlisted(folder, pieces, list);
   return pieces;
 }
 
@@ -72,6 +91,20 @@ std::string BagInside(const std::filesystem::path& folder) {
 bool IsBagFolder(const std::filesystem::path& folder) {
   std::error_code error;
   return std::filesystem::is_regular_file(folder / kMetadata, error);
+}
+
+std::map<std::string, double> StatedMessages(const std::filesystem::path& folder) {
+  std::map<std::string, double> messages;
+  if (!IsBagFolder(folder)) return messages;
+  const std::filesystem::path metadata = folder / kMetadata;
+  const auto topics = YamlValue::Parse(ReadFile(metadata), metadata.string())
+                          .Get("rosbag2_bagfile_information")
+                          .Find("topics_with_message_count");
+  if (!topics) return messages;
+  for (const YamlValue& topic : topics->Items()) {
+    messages[topic.Get("topic_metadata").Get("name").Text()] = topic.Get("message_count").Number();
+  }
+  return messages;
 }
 
 std::vector<std::filesystem::path> FilesOfRecording(const std::filesystem::path& recording) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <istream>
+#include <map>
 #include <memory>
 #include <span>
 #include <streambuf>
@@ -54,6 +55,10 @@ class ByteSource {
 
 /// Whether `ros2 bag record` wrote this folder: it holds a metadata.yaml.
 bool IsBagFolder(const std::filesystem::path& folder);
+
+/// How many messages of each topic metadata.yaml in the folder of a bag states; nothing where it
+/// states none, or this is no such folder.
+std::map<std::string, double> StatedMessages(const std::filesystem::path& folder);
 
 /// The files that are read of a recording: itself, or what is in the folder of a bag.
 std::vector<std::filesystem::path> FilesOfRecording(const std::filesystem::path& recording);

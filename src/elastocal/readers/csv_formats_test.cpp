@@ -164,6 +164,19 @@ TEST(MotiveTest, RigidBodiesAreFourMarkers) {
   EXPECT_EQ(file.notes.size(), 1u);  // of what the model expects
 }
 
+// As Motive exported in 2016 (format 1.21).
+TEST(MotiveTest, RowsOfTheHeaderWithoutNames) {
+  std::string text = kBodyTake;
+  for (const char* name : {"Type", "Name", "ID"}) {
+    text = Replaced(text, std::string("\n,") + name + ",", "\n,,");
+  }
+  text = Replaced(text, "Time (Seconds)", "Time");
+  const RecordingFile unnamed = ReadCsv(text), named = ReadCsv(kBodyTake);
+  ASSERT_TRUE(unnamed.markers.has_value());
+  EXPECT_EQ(unnamed.markers->names, named.markers->names);
+  EXPECT_EQ(unnamed.markers->positions.row(0), named.markers->positions.row(0));
+}
+
 TEST(MotiveTest, MistakesAreNamed) {
   const std::string text = kBodyTake;
   ExpectInputError([&] { ReadCsv(Replaced(text, "Length Units,Meters,", "")); },

@@ -79,9 +79,12 @@ class MotiveReader {
     }
   }
 
-  /// Rows Type, Name, ID and the like, then one of quantities, then Frame, Time and axes.
+  /// Rows Type, Name, ID and the like, then one of quantities, then Frame, Time and axes. Motive
+  /// of format 1.21 (2016) does not say in the second column which row is which: types come first,
+  /// then names.
   void ReadColumnRows() {
-    std::vector<std::string> last;
+    std::vector<std::vector<std::string>> unnamed;
+    bool named = false;
     for (;;) {
       lines_.Expect("the row Frame, Time (Seconds), X, Y, Z");
       if (lines_.blank()) continue;
@@ -98,11 +101,23 @@ class MotiveReader {
       }
       if (frame) {
         if (!key.starts_with("Time")) lines_.FailCell(1, "'Time (Seconds)'");
-        for (std::size_t i = 2; i < last.size(); ++i) columns_[i].quantity = last[i];
+        TakeUnnamedRows(unnamed, named);
         return;
       }
-      last = std::move(cells);
+      named = named || key == "Type";
+      if (key.empty()) unnamed.push_back(std::move(cells));
     }
+  }
+
+  void TakeUnnamedRows(const std::vector<std::vector<std::string>>& rows, bool types_are_named) {
+    if (rows.empty()) return;
+    const auto take = [&](const std::vector<std::string>& row, std::string MotiveColumn::*cell) {
+      for (std::size_t i = 2; i < row.size(); ++i) columns_[i].*cell = row[i];
+    };
+    take(rows.back(), &MotiveColumn::quantity);
+    if (types_are_named || rows.size() < 3) return;
+    take(rows[0], &MotiveColumn::type);
+    take(rows[1], &MotiveColumn::name);
   }
 
   bool HasAxes(std::size_t i, std::string_view axes, std::string_view quantity) const {

@@ -10,6 +10,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/utf8.hpp"
 #include "elastocal/readers/body_track.hpp"
+#include "elastocal/readers/byte_source.hpp"
 #include "elastocal/readers/cdr.hpp"
 #include "elastocal/readers/joint_columns.hpp"
 #include "elastocal/readers/joint_series.hpp"
@@ -209,7 +210,15 @@ void RosMessages::TakeTimes(Topic& topic, std::vector<std::string>& notes) const
 
 RecordingFile RosMessages::Take() {
   RecordingFile file;
-  for (Topic& topic : topics_) TakeTimes(topic, file.notes);
+  const std::map<std::string, double> stated = StatedMessages(source_);
+  for (Topic& topic : topics_) {
+    TakeTimes(topic, file.notes);
+    const auto count = stated.find(topic.name);
+    if (topic.kind == Kind::kOther || count == stated.end()) continue;
+    if (count->second != static_cast<double>(topic.messages)) {
+      file.notes.back() += "; metadata.yaml states " + FormatNumber(count->second);
+    }
+  }
   TakeJoints(file);
   TakePoses(file);
   if (!file.joints || !file.markers) file.markers_start_s.reset();
