@@ -117,14 +117,6 @@ std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
       names.empty() ? "" : " (--accept" + names + " corrects it)");
 }
 
-/// At most `count` postures. Motions are sampled far more densely than postures are held.
-Recording EvenlyThinned(const Recording& recording, int count) {
-  const int step = (recording.posture_count() + count - 1) / count;
-  std::vector<int> kept;
-  for (int i = 0; i < recording.posture_count(); i += step) kept.push_back(i);
-  return SelectPostures(recording, kept);
-}
-
 /// Whether the estimate has each of two markers where the project has the other.
 bool AreExchanged(const CalibrationResult& result, int a, int b) {
   const int first = result.model.parameter_count() - 3 * result.model.marker_count();
@@ -268,6 +260,7 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
     return {exchange->Description(recording, held_out) +
             ". Correct the labels and calibrate again"};
   }
+  // Motions are sampled far more densely than postures are held.
   const Recording thinned = EvenlyThinned(held_out, recording.posture_count());
   Recording all = JoinTrials(recording, thinned);
   // Trials that contradict each other keep noise and outliers from coming to rest.
