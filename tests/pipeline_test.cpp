@@ -225,6 +225,14 @@ TEST_F(Pipeline, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
             std::string::npos)
       << found[0];
 
+  // A joint that moves few of the markers.
+  Recording of_flange = as_trial("swing", TrialKind::kCalibration, 1);
+  of_flange.q.col(6).array() += 1.5 * M_PI / 180.0;
+  const std::vector<std::string> of_few = contradictions(of_flange, held_out);
+  ASSERT_EQ(of_few.size(), 1u);
+  EXPECT_NE(of_few[0].find("flange_joint: its positions are off by"), std::string::npos)
+      << of_few[0];
+
   // Limbs that were calibrated one after the other are held out together.
   Recording together = held_out;
   together.trials[0].chains = {project_.chains[0].name, project_.chains[1].name};
