@@ -293,6 +293,36 @@ TEST_F(Pipeline, OfCorrectionsWithoutWhichNoRobotFitsTheBestIsNamed) {
   EXPECT_EQ(mistakes[0].name, "frozen:" + project_.tree.joints[4].name);
 }
 
+// In one trial the joint hardly moves, so that its markers tell nothing; another one was logged by
+// a program that had it right.
+TEST_F(Pipeline, ASignIsUndoneInAllTrialsThatDoNotContradict) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const auto trial = [&](const std::string& name, std::uint64_t seed) {
+    Recording recording = MakeSyntheticRecording(
+        model, Eigen::VectorXd::Zero(model.parameter_count()), {.postures = 40, .seed = seed});
+    recording.trials = {{name, TrialKind::kCalibration, {project_.chains.front().name}}};
+    recording.trial.assign(40, 0);
+    return recording;
+  };
+  Recording still = trial("still", 2);
+  still.q.col(2).setConstant(0.01);
+  Measurements measured;
+  measured.calibration = JoinTrials(JoinTrials(trial("swing", 1), still), trial("right", 3));
+  const Eigen::MatrixXd q = measured.calibration.q;
+  measured.calibration.q.col(2).head(80) *= -1.0;
+  const std::string name = "sign:" + project_.tree.joints[2].name;
+  EXPECT_EQ(AcceptMistakes(project_, {name}, measured).size(), 1u);
+  EXPECT_EQ(measured.calibration.q, q);
+
+  // Where only a clock told it, it is undone as well.
+  measured.calibration = trial("still", 2);
+  measured.calibration.q.col(2).setConstant(-0.01);
+  measured.trials.resize(1);
+  measured.trials[0].clock_without = {name};
+  EXPECT_EQ(AcceptMistakes(project_, {name}, measured).size(), 1u);
+  EXPECT_EQ(measured.calibration.q(0, 2), 0.01);
+}
+
 // Cameras whose export has one axis the other way.
 TEST_F(Pipeline, MarkersOfTheOppositeHandAreNamed) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
