@@ -225,6 +225,14 @@ TEST_F(Pipeline, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
             std::string::npos)
       << found[0];
 
+  // A joint that moves few of the markers.
+  Recording of_flange = as_trial("swing", TrialKind::kCalibration, 1);
+  of_flange.q.col(6).array() += 1.5 * M_PI / 180.0;
+  const std::vector<std::string> of_few = contradictions(of_flange, held_out);
+  ASSERT_EQ(of_few.size(), 1u);
+  EXPECT_NE(of_few[0].find("flange_joint: its positions are off by"), std::string::npos)
+      << of_few[0];
+
   // Limbs that were calibrated one after the other are held out together.
   Recording together = held_out;
   together.trials[0].chains = {project_.chains[0].name, project_.chains[1].name};
@@ -283,6 +291,36 @@ TEST_F(Pipeline, OfCorrectionsWithoutWhichNoRobotFitsTheBestIsNamed) {
       FindMistakesBy(project_, recording, std::numeric_limits<double>::infinity(), error_of);
   ASSERT_FALSE(mistakes.empty());
   EXPECT_EQ(mistakes[0].name, "frozen:" + project_.tree.joints[4].name);
+}
+
+// In one trial the joint hardly moves, so that its markers tell nothing; another one was logged by
+// a program that had it right.
+TEST_F(Pipeline, ASignIsUndoneInAllTrialsThatDoNotContradict) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const auto trial = [&](const std::string& name, std::uint64_t seed) {
+    Recording recording = MakeSyntheticRecording(
+        model, Eigen::VectorXd::Zero(model.parameter_count()), {.postures = 40, .seed = seed});
+    recording.trials = {{name, TrialKind::kCalibration, {project_.chains.front().name}}};
+    recording.trial.assign(40, 0);
+    return recording;
+  };
+  Recording still = trial("still", 2);
+  still.q.col(2).setConstant(0.01);
+  Measurements measured;
+  measured.calibration = JoinTrials(JoinTrials(trial("swing", 1), still), trial("right", 3));
+  const Eigen::MatrixXd q = measured.calibration.q;
+  measured.calibration.q.col(2).head(80) *= -1.0;
+  const std::string name = "sign:" + project_.tree.joints[2].name;
+  EXPECT_EQ(AcceptMistakes(project_, {name}, measured).size(), 1u);
+  EXPECT_EQ(measured.calibration.q, q);
+
+  // Where only a clock told it, it is undone as well.
+  measured.calibration = trial("still", 2);
+  measured.calibration.q.col(2).setConstant(-0.01);
+  measured.trials.resize(1);
+  measured.trials[0].clock_without = {name};
+  EXPECT_EQ(AcceptMistakes(project_, {name}, measured).size(), 1u);
+  EXPECT_EQ(measured.calibration.q(0, 2), 0.01);
 }
 
 // Cameras whose export has one axis the other way.

@@ -244,6 +244,10 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   Recording recording = clean;
   recording.torques.col(knee) *= -1.0;
   only(recording, knee, TorqueContradiction::kReversed);
+  const int elbow = FindJoint(robot_.project.tree, "arm_left_4_joint");  // bears little
+  recording = clean;
+  recording.torques.col(elbow) *= -1.0;
+  only(recording, elbow, TorqueContradiction::kReversed);
   recording = clean;
   recording.torques.col(knee) *= 1000.0;
   only(recording, knee, TorqueContradiction::kScaled);

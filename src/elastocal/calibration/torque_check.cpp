@@ -15,6 +15,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastSpread = 5.0;      // N.m or N: standard deviation of static torques ...
+constexpr double kLeastReversed = 1.0;    // the same where they follow those of statics reversed
 constexpr double kLever = 0.02;           // ... and by how much the weight carried may be aside, m
 constexpr double kLeastBias = 10.0;       // N.m or N
 constexpr double kLeastBiasShare = 0.25;  // of the largest static torque
@@ -50,10 +51,13 @@ std::optional<TorqueLine> FitLine(const Pairs& pairs) {
   const Eigen::ArrayXd x = expected - expected.mean();
   const Eigen::ArrayXd y = measured - measured.mean();
   const double spread = std::sqrt(x.square().mean());
-  if (spread < std::max(kLeastSpread, kLever * pairs.weight)) return std::nullopt;
   const double norm = std::sqrt(x.square().sum() * y.square().sum());
-  return TorqueLine{.slope = (x * y).sum() / x.square().sum(),
-                    .correlation = norm > 0.0 ? (x * y).sum() / norm : 0.0};
+  const TorqueLine line{.slope = (x * y).sum() / x.square().sum(),
+                        .correlation = norm > 0.0 ? (x * y).sum() / norm : 0.0};
+  // Neither masses nor friction turn torques round.
+  const double least = line.correlation < -kFollows ? kLeastReversed : kLeastSpread;
+  if (!(spread >= std::max(least, kLever * pairs.weight))) return std::nullopt;
+  return line;
 }
 
 bool IsWithin(double ratio, double most) { return ratio < most && ratio * most > 1.0; }

@@ -35,8 +35,8 @@ struct ContradictoryTorque {
 /// and more have one factor of 1.5 and more, or its inverse, within a quarter: masses are not all
 /// off by as much. Statics of the joints of a leg on one foot, of the others in any posture, at
 /// nominal geometry; the waist as its markers have it. Only sensors whose static torque varies by 5
-/// N.m (N) or more (sd; for a bias: any) in five postures or more are judged; none where the robot
-/// description has no masses.
+/// N.m (N) or more (sd; for a bias: any; 1 where they follow it reversed, with a correlation of
+/// 0.9) in five postures or more are judged; none where the robot description has no masses.
 std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& model,
                                                           const Recording& recording,
                                                           double slip_m);

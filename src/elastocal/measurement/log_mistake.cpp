@@ -128,14 +128,8 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
   const std::vector<int> columns = MovingColumns(robot, markers, log, coordinates);
   for (std::size_t a = 0; a < columns.size(); ++a) {
     for (std::size_t b = a; b < columns.size(); ++b) {
-      SmoothedLog changed = log;
-      for (LogPiece& piece : changed.pieces) {
-        if (a == b) {
-          piece.values.col(columns[a]) *= -1.0;
-        } else {
-          piece.values.col(columns[a]).swap(piece.values.col(columns[b]));
-        }
-      }
+      const SmoothedLog changed =
+          WithoutMistake(log, {.column = columns[a], .exchanged = columns[b]});
       const ClockFit fit = EstimateTrialClock(
           speeds, rate_hz, PredictSpeeds(robot, markers, standing, changed, coordinates, rate_hz),
           expected_lag_s, options);
@@ -157,6 +151,41 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
     if (!best || fit.peak > best->peak) best = {column, column, fit.peak, still_from, still_to};
   }
   return best;
+}
+
+std::string NameOf(const LogMistake& mistake, const std::vector<std::string>& names) {
+  const std::string& name = names[mistake.column];
+  if (mistake.frozen_to_s > mistake.frozen_from_s) return "frozen:" + name;
+  if (mistake.exchanged == mistake.column) return "sign:" + name;
+  const std::string& other = names[mistake.exchanged];
+  return "exchange:" + std::min(name, other) + "," + std::max(name, other);
+}
+
+std::vector<LogMistake> MistakesOf(const std::vector<std::string>& mistakes,
+                                   const std::vector<std::string>& names) {
+  std::vector<LogMistake> found;
+  const auto count = static_cast<int>(names.size());
+  for (int a = 0; a < count; ++a) {
+    for (int b = a; b < count; ++b) {
+      const LogMistake one{.column = a, .exchanged = b};
+      const std::string name = NameOf(one, names);
+      const bool wanted = std::find(mistakes.begin(), mistakes.end(), name) != mistakes.end();
+      if (wanted) found.push_back(one);
+    }
+  }
+  return found;
+}
+
+SmoothedLog WithoutMistake(SmoothedLog log, const LogMistake& mistake) {
+  if (mistake.frozen_to_s > mistake.frozen_from_s) return log;
+  for (LogPiece& piece : log.pieces) {
+    if (mistake.exchanged == mistake.column) {
+      piece.values.col(mistake.column) *= -1.0;
+    } else {
+      piece.values.col(mistake.column).swap(piece.values.col(mistake.exchanged));
+    }
+  }
+  return log;
 }
 
 std::string Describe(const LogMistake& mistake, const std::vector<std::string>& names) {

@@ -32,6 +32,16 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
                                          const std::optional<double>& expected_lag_s,
                                          const ClockOptions& options, double peak);
 
+/// "sign:arm_7_joint", "exchange:a,b", "frozen:a"; `names`: of the columns.
+std::string NameOf(const LogMistake& mistake, const std::vector<std::string>& names);
+
+/// The signs and exchanges of columns among mistakes of these names.
+std::vector<LogMistake> MistakesOf(const std::vector<std::string>& mistakes,
+                                   const std::vector<std::string>& names);
+
+/// The log with a sign reversed or two joints exchanged; as it is with a frozen joint.
+SmoothedLog WithoutMistake(SmoothedLog log, const LogMistake& mistake);
+
 /// "with the sign of arm_7_joint reversed the log fits (correlation 0.99)"; `names`: of the
 /// columns.
 std::string Describe(const LogMistake& mistake, const std::vector<std::string>& names);

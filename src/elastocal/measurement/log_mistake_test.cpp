@@ -28,6 +28,13 @@ TEST(LogMistakesStudy, NamesTheSignAndTheExchangeThatSpoilTheClock) {
                      std::string::npos
                  ? 1
                  : 0;
+    // On request it is undone for the clock, and not in the positions.
+    MeasurementOptions on_request;
+    on_request.accepted = {"sign:" + clean.log.names[c]};
+    const TrialSamples told = Sample(played, on_request);
+    EXPECT_EQ(told.summary.refused, "");
+    EXPECT_EQ(told.summary.clock_without, on_request.accepted);
+    EXPECT_LT((told.q.col(c) + Sample(clean).q.col(c)).cwiseAbs().maxCoeff(), 0.01);
   }
   ScriptedTrial played = clean;
   played.log.positions.col(2).swap(played.log.positions.col(3));

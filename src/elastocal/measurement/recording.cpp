@@ -98,6 +98,13 @@ Recording SelectPostures(const Recording& recording, const std::vector<int>& pos
   return selected;
 }
 
+Recording EvenlyThinned(const Recording& recording, int most) {
+  const int step = (recording.posture_count() + most - 1) / most;
+  std::vector<int> kept;
+  for (int i = 0; i < recording.posture_count(); i += step) kept.push_back(i);
+  return SelectPostures(recording, kept);
+}
+
 namespace {
 
 /// One below the other; what one of them does not have is NaN.

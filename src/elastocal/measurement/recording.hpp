@@ -97,6 +97,9 @@ Eigen::MatrixXd ApproachesOf(const Eigen::MatrixXd& q, const std::vector<int>& p
 /// The given postures of a recording, in the given order.
 Recording SelectPostures(const Recording& recording, const std::vector<int>& postures);
 
+/// At most so many of its postures, evenly.
+Recording EvenlyThinned(const Recording& recording, int most);
+
 /// The trials of two recordings of one robot, with the same markers and the same gravity, as one.
 Recording JoinTrials(const Recording& first, const Recording& second);
 

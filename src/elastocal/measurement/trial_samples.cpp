@@ -180,6 +180,37 @@ class TrialSampler {
 
   /// Estimates the clock; why it cannot be told, or nothing.
   std::string TellClock(const Motion& seen) {
+    std::string untold = TellClockByLog(seen);
+    if (options_.accepted.empty()) return untold;
+    const SmoothedLog as_logged = smoothed_log_;
+    const bool told = untold.empty();
+    std::vector<std::string> undone = UndoAccepted(seen);
+    untold = TellClockByLog(seen);
+    smoothed_log_ = as_logged;  // whether all trials have it, they tell together
+    if (!told && untold.empty()) summary().clock_without = std::move(undone);
+    return untold;
+  }
+
+  /// Of the mistakes that the user wants undone, those without which speeds agree better.
+  std::vector<std::string> UndoAccepted(const Motion& seen) {
+    std::vector<std::string> undone;
+    FitClock(seen);
+    double peak = summary().clock.peak;
+    for (const LogMistake& mistake : MistakesOf(options_.accepted, log_.names)) {
+      SmoothedLog other = WithoutMistake(smoothed_log_, mistake);
+      std::swap(other, smoothed_log_);
+      FitClock(seen);
+      if (summary().clock.peak > peak) {
+        peak = summary().clock.peak;
+        undone.push_back(NameOf(mistake, log_.names));
+      } else {
+        std::swap(other, smoothed_log_);
+      }
+    }
+    return undone;
+  }
+
+  std::string TellClockByLog(const Motion& seen) {
     ClockFit& clock = summary().clock;
     FitClock(seen);
     if (clock.state == ClockState::kReliable) {

@@ -37,6 +37,8 @@ struct MeasurementOptions {
   double largest_rest_lag_sd_s = 0.030;
   double sine_rate_hz = 10.0;  ///< rate of the moments taken from a motion without rests
   TorqueCheckOptions torques = {};
+  /// Mistakes of the log (NameOf) that are undone for the clock where speeds agree better then.
+  std::vector<std::string> accepted = {};
 };
 
 /// The samples of one trial, for the estimator.

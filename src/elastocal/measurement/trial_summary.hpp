@@ -32,6 +32,8 @@ struct TrialSummary {
   double rate_hz = 0.0;
   int frame_count = 0;
   ClockFit clock;
+  /// Mistakes of the log (NameOf) without which alone the clock was told; positions are as logged.
+  std::vector<std::string> clock_without;
 
   int postures = 0;     ///< number of rests or, in a sine trial, of moments
   int samples = 0;      ///< frames in them, as the paper counts (section 5.1)

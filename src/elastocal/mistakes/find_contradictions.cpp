@@ -33,7 +33,9 @@ constexpr double kBestExpected = 0.03;
 struct Contrast {
   std::string group;
   double fitted = 0.0, uncalibrated = 0.0, held_out = 0.0;  // m
+  double largest_of_clusters = 0.0;                         // of the ratios of all clusters
   double ratio() const { return held_out / std::max(fitted, kBestExpected * uncalibrated); }
+  bool suspicious() const { return std::max(ratio(), largest_of_clusters) > kSuspicious; }
 };
 
 /// Whether all chains of a group (TrialGroups) are also in another one.
@@ -60,13 +62,45 @@ double RmseWithin(const ErrorTable& table, const std::string& group, ModelKind k
 }
 
 Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out, ModelKind kind) {
-  Contrast largest{"", 1.0, 0.0, 0.0};
+  Contrast largest{"", 1.0, 0.0, 0.0, 0.0};
   for (const ErrorTableRow& row : held_out.groups) {
     const auto metrics = row.metrics.find(kind);
     const Contrast contrast{row.group, RmseWithin(fitted, row.group, kind),
                             RmseWithin(fitted, row.group, ModelKind::kUncalibrated),
-                            metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d};
+                            metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d, 0.0};
     if (contrast.fitted > 0.0 && contrast.ratio() > largest.ratio()) largest = contrast;
+  }
+  return largest;
+}
+
+/// Root mean square of the markers over the trials that show them; 0 where none does.
+double RmseOfMarkers(const ErrorTable& table, const std::vector<int>& markers, ModelKind kind) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const TrialErrors& trial : table.trials) {
+    const auto metrics = trial.metrics.find(kind);
+    if (metrics == trial.metrics.end()) continue;
+    for (std::size_t k = 0; k < trial.markers.size(); ++k) {
+      const double rmse = metrics->second.marker_rmse_3d[static_cast<Eigen::Index>(k)];
+      const bool of_these =
+          std::find(markers.begin(), markers.end(), trial.markers[k]) != markers.end();
+      if (!of_these || !std::isfinite(rmse)) continue;
+      squares += rmse * rmse;
+      ++count;
+    }
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+/// The same of the clusters: a neck is a small part of what it moves with.
+double LargestRatioOfClusters(const ErrorTable& fitted, const ErrorTable& held_out,
+                              const std::vector<LabelCluster>& clusters, ModelKind kind) {
+  double largest = 0.0;
+  for (const LabelCluster& cluster : clusters) {
+    const Contrast contrast{"", RmseOfMarkers(fitted, cluster.markers, kind),
+                            RmseOfMarkers(fitted, cluster.markers, ModelKind::kUncalibrated),
+                            RmseOfMarkers(held_out, cluster.markers, kind), 0.0};
+    if (contrast.fitted > 0.0) largest = std::max(largest, contrast.ratio());
   }
   return largest;
 }
@@ -115,14 +149,6 @@ std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
       "with it by {:.3g} mm{}",
       what, 1e3 * mistakes.back().after, 1e3 * before,
       names.empty() ? "" : " (--accept" + names + " corrects it)");
-}
-
-/// At most `count` postures. Motions are sampled far more densely than postures are held.
-Recording EvenlyThinned(const Recording& recording, int count) {
-  const int step = (recording.posture_count() + count - 1) / count;
-  std::vector<int> kept;
-  for (int i = 0; i < recording.posture_count(); i += step) kept.push_back(i);
-  return SelectPostures(recording, kept);
 }
 
 /// Whether the estimate has each of two markers where the project has the other.
@@ -215,7 +241,11 @@ std::optional<Exchange> ExchangeWithinCluster(const Project& project, const Reco
 Contrast ContrastOf(const Project& project, const Recording& recording,
                     const ModelComparison& comparison, const ErrorTable& held_out_table) {
   const ErrorTable fitted = JudgeOnTrials(comparison, recording, project.calibration).table;
-  return LargestContrast(fitted, held_out_table, comparison.largest().kind);
+  const ModelKind kind = comparison.largest().kind;
+  Contrast contrast = LargestContrast(fitted, held_out_table, kind);
+  contrast.largest_of_clusters =
+      LargestRatioOfClusters(fitted, held_out_table, SeenClusters(project, recording), kind);
+  return contrast;
 }
 
 }  // namespace
@@ -223,8 +253,7 @@ Contrast ContrastOf(const Project& project, const Recording& recording,
 std::string LeaveOutBriefExchange(const Project& project, const Recording& recording,
                                   const ModelComparison& comparison,
                                   const ErrorTable& held_out_table, Recording& held_out) {
-  if (!(ContrastOf(project, recording, comparison, held_out_table).ratio() > kSuspicious))
-    return "";
+  if (!ContrastOf(project, recording, comparison, held_out_table).suspicious()) return "";
   const std::optional<Exchange> found =
       ExchangeWithinCluster(project, recording, held_out, comparison);
   if (!found || found->of_estimate) return "";
@@ -258,7 +287,7 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
                                             const ModelComparison& comparison,
                                             const ErrorTable& held_out_table) {
   const Contrast contrast = ContrastOf(project, recording, comparison, held_out_table);
-  if (!(contrast.ratio() > kSuspicious)) return {};
+  if (!contrast.suspicious()) return {};
   const std::string mistake =
       MistakeInHeldOut(project, held_out, robot.knocks, comparison, held_out_table);
   if (!mistake.empty()) return {mistake};
@@ -268,6 +297,7 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
     return {exchange->Description(recording, held_out) +
             ". Correct the labels and calibrate again"};
   }
+  // Motions are sampled far more densely than postures are held.
   const Recording thinned = EvenlyThinned(held_out, recording.posture_count());
   Recording all = JoinTrials(recording, thinned);
   // Trials that contradict each other keep noise and outliers from coming to rest.

@@ -23,14 +23,6 @@ LogSuspicion InAll(LogSuspicion mistake, const Recording& recording) {
   return mistake;
 }
 
-/// Evenly, few postures.
-Recording FewOf(const Recording& recording) {
-  std::vector<int> some;
-  const int count = recording.posture_count();
-  for (int i = 0; i < count; i += 1 + (count - 1) / kPosturesOfPairs) some.push_back(i);
-  return SelectPostures(recording, some);
-}
-
 }  // namespace
 
 std::vector<LogAlternative> OtherColumns(const Recording& recording, const RobotTree& tree,
@@ -99,7 +91,7 @@ std::vector<LogAlternative> BestPair(const Recording& recording, const RobotTree
     std::erase_if(possible, [](const auto& one) { return one.kind != LogContradiction::kSign; });
   }
   if (possible.size() * possible.size() > kMostPairs) return {};
-  const Recording few = FewOf(recording);
+  const Recording few = EvenlyThinned(recording, kPosturesOfPairs);
   double least = std::numeric_limits<double>::infinity();
   const LogSuspicion* pair[2] = {nullptr, nullptr};
   for (const LogSuspicion& first : possible) {

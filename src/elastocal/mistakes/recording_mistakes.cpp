@@ -4,23 +4,21 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/calibration/label_check.hpp"
 #include "elastocal/calibration/log_check.hpp"
 #include "elastocal/calibration/prediction.hpp"
-#include "elastocal/calibration/row_shift.hpp"
-#include "elastocal/calibration/table_check.hpp"
 #include "elastocal/calibration/turned_axes.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
-#include "elastocal/mistakes/log_alternatives.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/mistakes/suspected_signs.hpp"
+#include "elastocal/mistakes/tried_correction.hpp"
 
 namespace elastocal {
 namespace {
@@ -32,77 +30,8 @@ constexpr std::size_t kMostUndone = 100;  // by AcceptMistakes, in a recording
 constexpr double kClearlyRight = 0.2;     // of the error is left: no other suspicion is tried
 constexpr std::size_t kManyLeftOut = 4;   // a quarter of the postures
 constexpr double kLeftByLeavingOut = 0.3;
-// No robot whose errors are estimated leaves more, m and as a share of its size.
-constexpr double kExplained = 0.02;
-constexpr double kExplainedShare = 0.008;
 constexpr double kNoWorse = 1.2;       // of what is left without the postures
 constexpr double kLikeTheMost = 0.95;  // of the widest prior
-
-/// A suspicion of any kind.
-struct TriedCorrection {
-  std::string name, what;  ///< no name: it is to be mended where it comes from
-  Recording corrected;
-  std::vector<int> left_out = {};  ///< postures that `corrected` is without, ascending
-  /// It takes postures out and corrects none: whatever is wrong with them is gone, too.
-  bool only_leaves_out = false;
-};
-
-/// m.
-double MostLeft(const RobotTree& tree) {
-  return std::min(kExplained, kExplainedShare * RobotSize(tree));
-}
-
-std::string NameOf(const LabelSuspicion& suspicion) {
-  return "labels:" + std::min(suspicion.a, suspicion.b) + "," + std::max(suspicion.a, suspicion.b);
-}
-
-TriedCorrection Undone(const LogSuspicion& one, const RobotTree& tree, const Recording& recording) {
-  return {NameOf(one, tree), DescribeSuspicion(one, tree, recording),
-          WithoutMistake(recording, one, tree),
-          one.kind == LogContradiction::kFrozen ? one.postures : std::vector<int>(),
-          one.kind == LogContradiction::kFrozen};
-}
-
-/// Adds it; not where rods would not close without it.
-void AddUndone(const LogSuspicion& one, const RobotTree& tree, const Recording& recording,
-               std::vector<TriedCorrection>& tried) {
-  try {
-    tried.push_back(Undone(one, tree, recording));
-  } catch (const InputError&) {
-  }
-}
-
-/// What the nominal robot makes one suspect, with the recording that is left once it is undone; at
-/// most so many of labels and of the log.
-std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel& nominal,
-                                        const Recording& recording, std::size_t most) {
-  const std::vector<LabelCluster> clusters = SeenClusters(project, recording);
-  TableSuspicions suspicions = FindTableSuspicions(nominal, recording, clusters);
-  if (!recording.trials.empty()) {
-    suspicions = {FindLogSuspicions(nominal, recording),
-                  FindLabelSuspicions(nominal, recording, clusters)};
-  }
-  std::vector<TriedCorrection> tried;
-  for (const LabelSuspicion& one : suspicions.labels) {
-    if (tried.size() >= most) break;
-    tried.push_back(
-        {NameOf(one), DescribeSuspicion(one, recording), WithoutExchange(recording, one)});
-  }
-  std::size_t frozen = 0, others = 0;
-  for (const LogSuspicion& one : suspicions.log) {
-    std::size_t& used = one.kind == LogContradiction::kFrozen ? frozen : others;
-    if (used < most) AddUndone(one, project.tree, recording, tried);
-    ++used;
-  }
-  if (const std::optional<RowShift> shift = FindRowShift(nominal, recording)) {
-    tried.push_back({fmt::format("rows:{:+d}", shift->rows), DescribeShift(*shift, recording),
-                     WithoutShift(recording, *shift), WithoutPartner(*shift, recording)});
-  }
-  if (!recording.trials.empty() && LooksMirrored(nominal, recording, MostLeft(project.tree))) {
-    tried.insert(tried.begin(), {"", kLeftHanded, Mirrored(recording)});
-  }
-  return tried;
-}
 
 /// The signs of the joints that move in these postures, undone in all.
 std::vector<TriedCorrection> SignsIn(const std::vector<int>& postures, const RobotTree& tree,
@@ -127,42 +56,106 @@ std::vector<TriedCorrection> NamedOfTable(const std::vector<std::string>& names,
   return named;
 }
 
-ErrorModel NominalModel(const Project& project, const Recording& recording) {
-  return SelectMarkers(MakeProjectModel(project, recording.trials), recording.marker_names);
-}
+/// What the user accepts is undone in the recordings that show it.
+class Acceptance {
+ public:
+  /// `told`: names that clocks of trials have shown.
+  Acceptance(const Project& project, const std::vector<std::string>& names,
+             const std::set<std::string>& told)
+      : project_(project), names_(names), told_(told), shown_(told) {}
 
-/// Undoes what has one of these names; adds the names that the recording shows and what was undone.
-void Accept(const Project& project, const std::vector<std::string>& names, Recording& recording,
-            std::vector<std::optional<Transform>>& truth, std::set<std::string>& shown,
-            std::vector<std::string>& undone) {
-  if (recording.posture_count() == 0) return;
-  const ErrorModel nominal = NominalModel(project, recording);
-  std::set<std::string> named_done;
-  for (std::size_t round = 0; round < kMostUndone; ++round) {
-    const TriedCorrection* next = nullptr;
-    const std::vector<TriedCorrection> tried = Suspicions(project, nominal, recording, kMostUndone);
-    for (const TriedCorrection& one : tried) {
-      if (one.name.empty()) continue;
-      shown.insert(one.name);
-      const bool wanted = std::find(names.begin(), names.end(), one.name) != names.end();
-      if (wanted && next == nullptr) next = &one;
+  void Undo(Recording& recording, std::vector<std::optional<Transform>>& truth) {
+    if (recording.posture_count() == 0) return;
+    const ErrorModel nominal = NominalModel(project_, recording);
+    std::set<std::string> done;  // as wholes: what is left of them was right
+    for (const std::string& name : told_) {
+      if (UndoInTrials(nominal, name, recording)) done.insert(name);
     }
-    const std::vector<TriedCorrection> named = next == nullptr
-                                                   ? NamedOfTable(names, recording, project.tree)
-                                                   : std::vector<TriedCorrection>();
-    for (const TriedCorrection& one : named) {
-      if (!shown.contains(one.name) && named_done.insert(one.name).second) next = &one;
+    for (std::size_t round = 0; round < kMostUndone; ++round) {
+      const std::optional<TriedCorrection> next = Next(nominal, recording, done);
+      if (!next) return;
+      if (UndoInTrials(nominal, next->name, recording)) {
+        done.insert(next->name);
+        told_.insert(next->name);
+        continue;
+      }
+      undone_.push_back(next->what);
+      if (!truth.empty()) {
+        std::for_each(next->left_out.rbegin(), next->left_out.rend(),
+                      [&](int posture) { truth.erase(truth.begin() + posture); });
+      }
+      recording = next->corrected;
     }
-    if (next == nullptr) break;
-    undone.push_back(next->what);
-    if (!truth.empty()) {
-      std::for_each(next->left_out.rbegin(), next->left_out.rend(),
-                    [&](int posture) { truth.erase(truth.begin() + posture); });
-    }
-    recording = Recording(next->corrected);
   }
-  shown.insert(named_done.begin(), named_done.end());
-}
+
+  /// Names that the recordings have shown, or a table need not; what was undone, in words.
+  const std::set<std::string>& shown() const { return shown_; }
+  const std::vector<std::string>& undone() const { return undone_; }
+
+ private:
+  bool IsWanted(const std::string& name) const {
+    return std::find(names_.begin(), names_.end(), name) != names_.end();
+  }
+
+  /// What the recording shows of them, or else what a table does not show.
+  std::optional<TriedCorrection> Next(const ErrorModel& nominal, const Recording& recording,
+                                      std::set<std::string>& done) {
+    std::optional<TriedCorrection> next;
+    for (TriedCorrection& one : Suspicions(project_, nominal, recording, kMostUndone)) {
+      if (one.name.empty()) continue;
+      shown_.insert(one.name);
+      if (!next && IsWanted(one.name) && !done.contains(one.name)) next = std::move(one);
+    }
+    if (next) return next;
+    for (TriedCorrection& one : NamedOfTable(names_, recording, project_.tree)) {
+      const bool of_this = !shown_.contains(one.name) || named_.contains(one.name);
+      if (!of_this || !done.insert(one.name).second) continue;
+      named_.insert(one.name);
+      shown_.insert(one.name);
+      return std::move(one);
+    }
+    return std::nullopt;
+  }
+
+  /// Columns are assigned once, by the program that logs: a sign or exchange is undone in all
+  /// trials but those that show it then. Whether it was; not in a table, nor where rods would not
+  /// close.
+  bool UndoInTrials(const ErrorModel& nominal, const std::string& name, Recording& recording) {
+    if (recording.trials.empty()) return false;
+    Recording as_table = recording;
+    as_table.trials.clear();
+    as_table.q.row(0).array() += 1.0;  // so that joints that stand still here are possible, too
+    for (LogSuspicion& one : PossibleLogMistakes(as_table, project_.tree)) {
+      if (NameOf(one, project_.tree) != name) continue;
+      try {
+        const Recording in_all = WithoutMistake(recording, one, project_.tree);
+        for (const LogSuspicion& other : FindLogSuspicions(nominal, in_all)) {
+          if (NameOf(other, project_.tree) == name) Remove(other.postures, one.postures);
+        }
+        recording = WithoutMistake(recording, one, project_.tree);
+      } catch (const InputError&) {
+        return false;
+      }
+      if (one.postures.empty()) return false;
+      undone_.push_back(DescribeSuspicion(one, project_.tree, recording));
+      return true;
+    }
+    return false;
+  }
+
+  static void Remove(const std::vector<int>& removed, std::vector<int>& ascending) {
+    std::erase_if(ascending, [&](int posture) {
+      return std::binary_search(removed.begin(), removed.end(), posture);
+    });
+  }
+
+  const Project& project_;
+  const std::vector<std::string>& names_;
+  std::set<std::string> told_;
+  std::set<std::string> shown_;
+  std::set<std::string> named_;  // shown by no recording
+  std::vector<std::string> undone_;
+};
 
 /// Whether an estimate is beyond what an error of a robot can be, by an axis or by the width of the
 /// prior: axes turned by half a turn explain a reversed sign perfectly.
@@ -348,12 +341,17 @@ std::vector<std::string> AcceptMistakes(const Project& project,
     }
   }
   if (names.empty()) return undone;
-  std::set<std::string> shown;
-  Accept(project, names, measured.calibration, measured.calibration_truth, shown, undone);
-  Accept(project, names, measured.validation, measured.validation_truth, shown, undone);
-  for (const std::string& name : names) {
-    if (!shown.contains(name)) RefuseAccepted(name, shown);
+  std::set<std::string> told;
+  for (const TrialSummary& trial : measured.trials) {
+    told.insert(trial.clock_without.begin(), trial.clock_without.end());
   }
+  Acceptance acceptance(project, names, told);
+  acceptance.Undo(measured.calibration, measured.calibration_truth);
+  acceptance.Undo(measured.validation, measured.validation_truth);
+  for (const std::string& name : names) {
+    if (!acceptance.shown().contains(name)) RefuseAccepted(name, acceptance.shown());
+  }
+  undone.insert(undone.end(), acceptance.undone().begin(), acceptance.undone().end());
   return undone;
 }
 

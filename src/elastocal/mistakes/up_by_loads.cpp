@@ -37,13 +37,6 @@ bool IsHeldByStatics(const Project& project, const Recording& recording) {
          HasMasses(project.tree) && recording.posture_count() >= kLeastRows;
 }
 
-Recording Thinned(const Recording& recording) {
-  const int step = (recording.posture_count() + kMostRows - 1) / kMostRows;
-  std::vector<int> kept;
-  for (int i = 0; i < recording.posture_count(); i += step) kept.push_back(i);
-  return SelectPostures(recording, kept);
-}
-
 CalibrationResult FitOf(const RecordedModel& robot, const Recording& recording,
                         const CalibrationOptions& options) {
   return Calibrate(robot.model, recording, robot.base, ModelKinds(robot.model).back(), options);
@@ -98,7 +91,7 @@ std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::
   project.elasticity.torsion = std::vector<std::string>{"*"};
   project.elasticity.extra.clear();  // causes that a wrong direction has called for
   Measurements measured = as_recorded;
-  measured.calibration = Thinned(as_recorded.calibration);
+  measured.calibration = EvenlyThinned(as_recorded.calibration, kMostRows);
   const RecordedModel robot = MakeRecordedModel(project, seed, measured, KnockSearch::kNone);
   Recording& recording = measured.calibration;
   const Eigen::Vector3d stated = recording.gravity;

@@ -293,6 +293,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   // Section 5.1, the measurements y^. Markers and the robot's log pass the same low-pass filter,
   // get one clock, and are reduced to the samples at which the markers are stable: for every marker
   // of a posture the same ones, so that none weighs more. The trials of all chains are joined.
+  project.measurement.accepted = options.accept;
   work.measured = ReadMeasurements(project, recordings);
   run.undone = AcceptMistakes(project, options.accept, work.measured);
 

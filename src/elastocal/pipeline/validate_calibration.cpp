@@ -120,6 +120,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
                     .warnings = {}};
   Project project = given;
   project.elasticity = ElasticityOf(run.calibration, given);
+  project.measurement.accepted = options.accept;
   Measurements measured = ReadMeasurements(project, {recording}, ReadFor::kAnyUse);
   for (const std::string& what : AcceptMistakes(project, options.accept, measured)) {
     run.warnings.push_back(DescribeUndone(what));
