@@ -197,17 +197,15 @@ class CalibratedBalance {
     result.planned_zmp = Least(planned_.zmp, result.planned.motion);
     result.zmp = Least(zmp_, result.planned.motion);
     if (result.zmp.value >= std::min(robot_.limits.zmp_margin, result.planned_zmp.value)) return;
-    // What the plan leaves by itself is its planner's: masses may be described badly.
-    constexpr double kAlike = 1e-3;
-    const bool leaves =
-        result.zmp.value < 0.0 && result.zmp.value < result.planned_zmp.value - kAlike;
+    // A plan that leaves the support by itself is its planner's: masses may be described badly.
+    const bool leaves = result.zmp.value < 0.0 && result.planned_zmp.value >= 0.0;
     (leaves ? result.broken : result.warnings)
         .push_back(fmt::format("the zero-moment point is {:.1f} mm {} the edge of the support at "
                                "{:.2f} s, of the plan "
                                "{:.1f} mm, and 'plan' asks for {:.1f} mm; {}",
-                               1e3 * std::abs(result.zmp.value), leaves ? "beyond" : "from",
-                               result.zmp.time_s, 1e3 * result.planned_zmp.value,
-                               1e3 * robot_.limits.zmp_margin,
+                               1e3 * std::abs(result.zmp.value),
+                               result.zmp.value < 0.0 ? "beyond" : "from", result.zmp.time_s,
+                               1e3 * result.planned_zmp.value, 1e3 * robot_.limits.zmp_margin,
                                "plan limbs less stretched there, or slower"));
   }
 
