@@ -70,6 +70,10 @@ std::string DescribeCompensation(const CompensatedMotion& result, const RobotTre
   add_of_joint("joint to its limit", result.position);
   add("velocity, % of limit", result.velocity, 100.0);
   if (result.has_clearance) add("least distance of parts, mm", result.clearance, 1e3);
+  if (result.has_zmp) {
+    add("zero-moment point to the edge, mm: plan", result.planned_zmp, 1e3);
+    add("zero-moment point to the edge, mm: corrected", result.zmp, 1e3);
+  }
   return table.Render() + DescribeOpenJoints(result.at_rest) + DescribeLeft(result) +
          fmt::format("Left at hands, feet and waist: at most {:.3f} mm and {:.4f} deg\n",
                      1e3 * result.residual_m, result.residual_rad * kDegreesARadian);

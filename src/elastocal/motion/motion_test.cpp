@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/math/random.hpp"
+#include "elastocal/motion/link_zmp.hpp"
 #include "elastocal/motion/move_builder.hpp"
 #include "elastocal/motion/plan.hpp"
 #include "elastocal/motion/sampled_motion.hpp"
@@ -117,6 +118,49 @@ TEST_F(BalancedWalker, KeepsTheZeroMomentPointInFastMotions) {
   EXPECT_LT(margins.foot_turned.value, 1e-9);
   // The check finds the root link and the zero-moment point by another way than the planner.
   EXPECT_LT((forces.zmp - found.zmp).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+// Inverse dynamics know joints; the poses of the links alone have to tell the same.
+TEST_F(BalancedWalker, ZeroMomentPointOfLinksIsThatOfTheJoints) {
+  constexpr int kSamples = 201;
+  SampledMotion motion{100.0, robot_.rest.transpose().replicate(kSamples, 1), {}};
+  motion.standing.assign(kSamples, robot_.AllFeet());
+  for (int i = 0; i < kSamples; ++i) {
+    const double sway = std::pow(std::sin(M_PI / 100.0 * i), 2);
+    motion.q.row(i).head<3>() += sway * Eigen::RowVector3d(0.2, 0.1, 0.5);
+  }
+  MotionForces forces;
+  CheckMotion(robot_, motion, &forces);
+  LinkZmp follow(robot_.tree, 0.01);
+  for (int i = 0; i <= kSamples; ++i) {
+    std::optional<Eigen::Vector2d> zmp;
+    if (i == kSamples) {
+      zmp = follow.Last();
+    } else {
+      std::vector<Transform> T = LinkTransforms(robot_.tree, motion.q.row(i).transpose());
+      for (Transform& one : T) one = forces.T_world_root[static_cast<std::size_t>(i)] * one;
+      zmp = follow.Next(T);
+    }
+    ASSERT_EQ(zmp.has_value(), i > 0);
+    if (zmp) {
+      EXPECT_NEAR((zmp->transpose() - forces.zmp.row(i - 1)).norm(), 0.0, 3e-4) << i;
+    }
+  }
+  EXPECT_GT((forces.zmp.rowwise() - forces.zmp.row(0)).rowwise().norm().maxCoeff(), 5e-3);
+}
+
+TEST_F(BalancedWalker, AverageZeroMomentPointsKeepWhatLastsAndNotASample) {
+  constexpr int kSamples = 200;
+  const std::vector<std::vector<int>> standing(kSamples, robot_.AllFeet());
+  const Eigen::RowVector2d middle = SupportCentre(robot_, robot_.AllFeet()).transpose();
+  Eigen::MatrixX2d zmp = middle.replicate(kSamples, 1);
+  const auto least = [&] { return LeastAverageZmp(robot_, standing, zmp, 0.01); };
+  EXPECT_NEAR(least().value, 0.1, 1e-9);
+  zmp(100, 0) += 0.15;
+  EXPECT_GT(least().value, 0.09);
+  zmp.col(0).segment(100, 50).setConstant(middle.x() + 0.15);
+  EXPECT_NEAR(least().value, -0.05, 1e-9);
+  EXPECT_GE(least().sample, 100);
 }
 
 TEST_F(BalancedWalker, VisitsPosturesOnOneFoot) {

@@ -5,11 +5,15 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/motion/link_zmp.hpp"
 #include "elastocal/motion/motion_check.hpp"
 #include "elastocal/planning/project_motion.hpp"
 #include "elastocal/planning/stopped_joints.hpp"
@@ -142,23 +146,20 @@ void JudgeLeft(std::vector<std::string> reasons, double most_left_m, Compensated
                   1e3 * worst->most.value, worst->limb, worst->most.time_s, 1e3 * most_left_m));
 }
 
-/// Distances of the calibrated robot's parts: its links where the last Forward has them.
+/// Distances of the calibrated robot's parts.
 class CalibratedClearance {
  public:
   explicit CalibratedClearance(const Project& project)
       : spheres_(project.motion.spheres),
         pairs_(AllContacts(project)),
-        names_(ContactNames(project)),
-        T_root_link_(project.tree.links.size()) {}
+        names_(ContactNames(project)) {}
 
   bool empty() const { return pairs_.empty(); }
 
-  void Look(const Compensator& compensator, double time_s, MotionExtreme& least) {
-    for (std::size_t i = 0; i < T_root_link_.size(); ++i) {
-      T_root_link_[i] = compensator.link_pose(static_cast<int>(i));
-    }
+  void Look(const std::vector<Transform>& T_root_link, double time_s, MotionExtreme& least) const {
+    if (empty()) return;
     Eigen::Index nearest = 0;
-    const double distance = SphereDistances(spheres_, pairs_, T_root_link_).minCoeff(&nearest);
+    const double distance = SphereDistances(spheres_, pairs_, T_root_link).minCoeff(&nearest);
     KeepSmaller(distance, time_s, names_[static_cast<std::size_t>(nearest)], least);
   }
 
@@ -166,7 +167,61 @@ class CalibratedClearance {
   const std::vector<CollisionSphere>& spheres_;
   std::vector<SpherePair> pairs_;
   std::vector<std::string> names_;
-  std::vector<Transform> T_root_link_;
+};
+
+/// The zero-moment point of the plan, and of the calibrated robot, with masses as described. Its
+/// root link is where the plan has it, since hands and feet are.
+class CalibratedBalance {
+ public:
+  CalibratedBalance(const StandingRobot& robot, const SampledMotion& motion, MotionForces planned)
+      : robot_(robot),
+        standing_(motion.standing),
+        planned_(std::move(planned)),
+        step_(1.0 / motion.rate_hz),
+        follow_(robot.tree, step_),
+        zmp_(planned_.zmp) {}
+
+  /// The next sample.
+  void Look(std::vector<Transform> T_root_link) {
+    const Transform& T_world_root = planned_.T_world_root[Size(taken_)];
+    for (Transform& T : T_root_link) T = T_world_root * T;
+    const std::optional<Eigen::Vector2d> before = follow_.Next(T_root_link);
+    if (before) zmp_.row(taken_ - 1) = before->transpose();
+    ++taken_;
+  }
+
+  /// After the last sample.
+  void Store(CompensatedMotion& result) {
+    zmp_.row(taken_ - 1) = follow_.Last().transpose();
+    result.has_zmp = true;
+    result.planned_zmp = Least(planned_.zmp, result.planned.motion);
+    result.zmp = Least(zmp_, result.planned.motion);
+    if (result.zmp.value >= std::min(robot_.limits.zmp_margin, result.planned_zmp.value)) return;
+    // A plan that leaves the support by itself is its planner's: masses may be described badly.
+    const bool leaves = result.zmp.value < 0.0 && result.planned_zmp.value >= 0.0;
+    (leaves ? result.broken : result.warnings)
+        .push_back(fmt::format("the zero-moment point is {:.1f} mm {} the edge of the support at "
+                               "{:.2f} s, of the plan "
+                               "{:.1f} mm, and 'plan' asks for {:.1f} mm; {}",
+                               1e3 * std::abs(result.zmp.value),
+                               result.zmp.value < 0.0 ? "beyond" : "from", result.zmp.time_s,
+                               1e3 * result.planned_zmp.value, 1e3 * robot_.limits.zmp_margin,
+                               "plan limbs less stretched there, or slower"));
+  }
+
+ private:
+  MotionExtreme Least(const Eigen::MatrixX2d& zmp, const JointMotion& motion) const {
+    const Worst least = LeastAverageZmp(robot_, standing_, zmp, step_);
+    return {least.value, TimeAt(motion, least.sample)};
+  }
+
+  const StandingRobot& robot_;
+  const std::vector<std::vector<int>> standing_;
+  const MotionForces planned_;
+  const double step_;
+  LinkZmp follow_;
+  Eigen::Index taken_ = 0;
+  Eigen::MatrixX2d zmp_;
 };
 
 /// Torques by joint from those by coordinate of the plan.
@@ -235,12 +290,15 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
   result.planned.motion = planned;
   JointMotion& motion = result.planned.motion;
   std::unique_ptr<StandingRobot> robot;
+  std::optional<CalibratedBalance> balance;
   if (CanBeChecked(project, planned)) {
     robot = StandProjectRobot(project, {});
     MotionForces forces;
-    CheckMotion(*robot, ToSampled(*robot, planned), &forces);
+    const SampledMotion sampled = ToSampled(*robot, planned);
+    CheckMotion(*robot, sampled, &forces);
     result.planned.zmp = forces.zmp;
     result.planned.torques = forces.torques;
+    balance.emplace(*robot, sampled, std::move(forces));
   } else if (options.loads == MotionLoads::kPlanned) {
     throw InputError(planned.source +
                      ": torques of the plan need its times and support, and the project's soles");
@@ -255,6 +313,7 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
   result.left = NothingLeft(model);
   const Eigen::VectorXd speeds = Speeds(project.tree);
   Eigen::VectorXd torque;
+  std::vector<Transform> T_root_link(project.tree.links.size());
   for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {
     const Eigen::VectorXd nominal = planned.q.row(i).transpose();
     const StandingFeet feet =
@@ -276,11 +335,15 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
     Eigen::Index joint = 0;
     const double change = (compensator.command() - nominal).cwiseAbs().maxCoeff(&joint);
     KeepLarger(change, TimeAt(planned, i), CoordinateName(project.tree, joint), result.correction);
-    if (clearance.empty()) continue;
     compensator.Forward(compensator.command(), torque, feet);
-    clearance.Look(compensator, TimeAt(planned, i), result.clearance);
+    for (std::size_t link = 0; link < T_root_link.size(); ++link) {
+      T_root_link[link] = compensator.link_pose(static_cast<int>(link));
+    }
+    clearance.Look(T_root_link, TimeAt(planned, i), result.clearance);
+    if (balance) balance->Look(T_root_link);
   }
   JudgeLeft(stopped.Describe(static_cast<int>(motion.q.rows())), options.most_left_m, result);
+  if (balance) balance->Store(result);
   status &= ~CompensatorStatus{EC_JOINT_LIMIT | EC_CORRECTION_CUT};
   if (status != 0) result.broken.push_back(DescribeStatus(status));
   CheckLimits(project, result);

@@ -51,6 +51,11 @@ struct CompensatedMotion {
   /// there are any.
   MotionExtreme clearance;
   bool has_clearance = false;
+  /// Least distance of the zero-moment point to the edge of the support (LeastAverageZmp), m, of
+  /// the plan by the URDF, and of the calibrated robot with these positions and masses as
+  /// described; where the motion says what stands when.
+  MotionExtreme planned_zmp, zmp;
+  bool has_zmp = false;
   /// Why the motion must not be played, a sentence each with what a user can do: limits that keep
   /// the end of a limb too far from its place, a joint beyond its limit or faster than it, parts
   /// that touch. Empty: it may be played.

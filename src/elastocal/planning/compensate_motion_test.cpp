@@ -13,17 +13,15 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/planning/project_motion.hpp"
 #include "elastocal/robot/collision.hpp"
+#include "elastocal/robot/statics.hpp"
 #include "tests/runtime_calibration.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
 namespace {
 
-// Corrected commands take the parts of the calibrated robot to where the plan has them. The nominal
-// robot with these commands would have its feet by centimetres elsewhere, which nobody plays.
-TEST(CompensateMotion, ClearancesAreThoseOfTheCalibratedRobot) {
-  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
-  const std::unique_ptr<StandingRobot> robot = StandProjectRobot(project, {});
+/// TALOS that stands for two seconds.
+JointMotion RestOnSoles(const Project& project) {
   JointMotion plan;
   plan.source = "plan";
   plan.time_s = Eigen::Vector3d(0.0, 1.0, 2.0);
@@ -31,6 +29,15 @@ TEST(CompensateMotion, ClearancesAreThoseOfTheCalibratedRobot) {
   std::vector<int> soles;
   for (const Sole& sole : project.soles) soles.push_back(sole.link);
   plan.support.assign(3, soles);
+  return plan;
+}
+
+// Corrected commands take the parts of the calibrated robot to where the plan has them. The nominal
+// robot with these commands would have its feet by centimetres elsewhere, which nobody plays.
+TEST(CompensateMotion, ClearancesAreThoseOfTheCalibratedRobot) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const std::unique_ptr<StandingRobot> robot = StandProjectRobot(project, {});
+  const JointMotion plan = RestOnSoles(project);
   const double planned = robot->clearances(project.motion.rest).minCoeff();
   double naive = 0.0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -43,6 +50,31 @@ TEST(CompensateMotion, ClearancesAreThoseOfTheCalibratedRobot) {
     naive = std::max(naive, std::abs(robot->clearances(commanded).minCoeff() - planned));
   }
   EXPECT_GT(naive, 16e-3);
+}
+
+// A calibrated trunk that sits elsewhere moves the weight, also where hands and feet are as
+// planned.
+TEST(CompensateMotion, BalanceIsThatOfTheCalibratedRobot) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const JointMotion plan = RestOnSoles(project);
+  RuntimeModel model =
+      MakeRuntimeModel(project, RandomCalibration(project, 1), RuntimeContent::kNominal);
+  const auto trunk = static_cast<std::size_t>(FindLink(project.tree, "torso_2_link"));
+  double planned = 0.0;
+  const auto margin = [&](double forward) {
+    model.links[trunk].pose.p[0] += forward;
+    const CompensatedMotion result = CompensateMotion(project, model, plan);
+    EXPECT_TRUE(result.has_zmp);
+    EXPECT_EQ(result.broken.empty(), result.zmp.value > 0.0);
+    EXPECT_EQ(result.broken.empty() && result.warnings.empty(), result.zmp.value > 0.0195);
+    planned = result.planned_zmp.value;
+    return result.zmp.value;
+  };
+  const double as_planned = margin(0.0);
+  EXPECT_NEAR(as_planned, planned, 1e-6);
+  const double of_trunk = project.tree.links[trunk].mass / TotalMass(project.tree);
+  EXPECT_NEAR(margin((planned - 0.01) / of_trunk), 0.01, 1e-4);
+  EXPECT_NEAR(margin(0.02 / of_trunk), -0.01, 1e-4);
 }
 
 /// TALOS with drawn errors, and a plan of its posture of rest.

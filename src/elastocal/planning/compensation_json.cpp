@@ -31,6 +31,10 @@ std::string MakeCompensationJson(const CompensatedMotion& result) {
   json["to_joint_limit"] = MotionExtremeJson(result.position);
   json["velocity_share"] = MotionExtremeJson(result.velocity);
   if (result.has_clearance) json["clearance_m"] = MotionExtremeJson(result.clearance);
+  if (result.has_zmp) {
+    json["planned_zmp_m"] = MotionExtremeJson(result.planned_zmp);
+    json["zmp_m"] = MotionExtremeJson(result.zmp);
+  }
   json["at_rest"] = result.at_rest;
   json["broken"] = result.broken;
   json["warnings"] = result.warnings;

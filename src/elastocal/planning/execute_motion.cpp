@@ -12,7 +12,6 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/parallel.hpp"
-#include "elastocal/planning/compensate_motion.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 
 namespace elastocal {
@@ -229,12 +228,12 @@ struct Commanded {
 };
 
 Commanded Commands(const Project& project, const StoredCalibration& calibration,
-                   const JointMotion& planned, DeployAs as) {
+                   const JointMotion& planned, DeployAs as, MotionLoads loads) {
   if (as == DeployAs::kNominal) return {planned.q, ""};
   const RuntimeContent content =
       as == DeployAs::kUrdf ? RuntimeContent::kGeometry : RuntimeContent::kEverything;
-  CompensatedMotion corrected =
-      CompensateMotion(project, MakeRuntimeModel(project, calibration, content), planned);
+  CompensatedMotion corrected = CompensateMotion(
+      project, MakeRuntimeModel(project, calibration, content), planned, {.loads = loads});
   return {std::move(corrected.planned.motion.q),
           corrected.broken.empty() ? "" : corrected.broken.front()};
 }
@@ -300,7 +299,7 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
   physics.sliding_servo_stiffness *= kHeld;
   std::vector<Commanded> commands(options.as.size());
   ForAll(commands.size(), options.threads, [&](std::size_t i) {
-    commands[i] = Commands(project, calibration, planned, options.as[i]);
+    commands[i] = Commands(project, calibration, planned, options.as[i], options.loads);
     commands[i].q = FeedForward(commands[i].q, planned.time_s, physics.servo_frequency,
                                 2.0 / physics.servo_frequency - physics.time_step_s);
   });

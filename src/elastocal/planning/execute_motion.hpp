@@ -7,6 +7,7 @@
 
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/math/progress.hpp"
+#include "elastocal/planning/compensate_motion.hpp"
 #include "elastocal/planning/playback.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/simulation/stand_through.hpp"
@@ -57,6 +58,9 @@ struct DeployOptions {
   PhysicsOptions physics = {};
   /// The motion is played to this time of its own.
   double until_s = std::numeric_limits<double>::infinity();
+  /// What deflects the robot, as the controller knows it: a lifted leg that swings fast bends its
+  /// hip by more than its weight does.
+  MotionLoads loads = MotionLoads::kPlanned;
   int threads = 2;  ///< robots at a time; the result does not depend on it
 };
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/planning/execute_motion.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
-#include "elastocal/planning/compensate_motion.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/runtime_calibration.hpp"
 #include "tests/test_files.hpp"
@@ -32,6 +33,27 @@ TEST(ExecuteMotion, AMotionMayLeaveItsSupportOpen) {
   ASSERT_EQ(executions.size(), 1u);
   EXPECT_EQ(executions[0].refused, "");
   EXPECT_TRUE(executions[0].run.stood);
+}
+
+// The torques of the plan bend a leg that swings fast; its weight alone is another command.
+TEST(ExecuteMotion, AControllerKnowsTheTorquesOfItsPlan) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  JointMotion motion = OneJoint(project);
+  motion.time_s = Eigen::VectorXd::LinSpaced(41, 0.0, 0.4);
+  motion.q = project.motion.rest.transpose().replicate(41, 1);
+  const int arm = FindJoint(project.tree, "arm_left_1_joint");
+  const Eigen::Index c = project.tree.joints[static_cast<std::size_t>(arm)].coordinate;
+  motion.q.col(c).array() += 0.1 * (15.0 * motion.time_s.array()).sin().square();
+  const StoredCalibration calibration = RandomCalibration(project, 1);
+  const auto hands_m = [&](const DeployOptions& options) {
+    return PlayExecutions(project, calibration, motion, options).at(0).hands.rms_m;
+  };
+  DeployOptions options;
+  options.as = {DeployAs::kCompensated};
+  options.stabilised = {false};
+  const double by_default = hands_m(options);
+  options.loads = MotionLoads::kStatics;
+  EXPECT_GT(std::abs(hands_m(options) - by_default), 1e-6);
 }
 
 TEST(ExecuteMotion, ARobotWithoutFeetIsRefused) {
