@@ -252,6 +252,13 @@ TEST_F(Runtime, BadInputKeepsTheLastGoodOne) {
   torque[2] = std::numeric_limits<double>::infinity();
   EXPECT_EQ(robot.Command(q, torque, 1), unsigned{EC_BAD_TORQUE});
   EXPECT_EQ(robot.command(), with_torque);
+
+  // Garbage that is finite, whose products are not.
+  Eigen::VectorXd garbage = q;
+  garbage[3] = 1e300;
+  EXPECT_EQ(robot.Command(garbage, torque.setOnes(), 1), unsigned{EC_BAD_POSITION});
+  EXPECT_EQ(robot.command(), with_torque);
+  EXPECT_EQ(robot.Forward(garbage, torque, 1), unsigned{EC_BAD_POSITION});
 }
 
 TEST_F(Runtime, NoInputGivesAWildCommand) {

@@ -15,8 +15,8 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastSpread = 5.0;      // N.m or N: standard deviation of static torques ...
-constexpr double kLeastReversed = 1.0;    // the same where they follow those of statics reversed
 constexpr double kLever = 0.02;           // ... and by how much the weight carried may be aside, m
+constexpr double kLeastReversed = 1.0;    // instead of 5 where sensors follow statics reversed
 constexpr double kLeastBias = 10.0;       // N.m or N
 constexpr double kLeastBiasShare = 0.25;  // of the largest static torque
 constexpr double kLeastSlope = 0.5;

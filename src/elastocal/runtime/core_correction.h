@@ -7,6 +7,9 @@
 
 /* ---- input ---- */
 
+/* Whether a position, torque or length can be one of a robot: finite, and no garbage of memory. */
+static inline int ec_is_sane(double value) { return fabs(value) <= 1e9; }
+
 /* Takes over what is good of the input, and says what is not. `planned`: q are not measured. */
 static inline unsigned ec_take(const ec_robot* robot, const double* q, const double* torque,
                                unsigned support, int planned, ec_memory* memory) {
@@ -14,7 +17,7 @@ static inline unsigned ec_take(const ec_robot* robot, const double* q, const dou
   int c, k;
   memory->sides = &memory->side[planned * robot->shifts];
   for (c = 0; c < robot->coordinates; ++c) {
-    if (!isfinite(q[c])) status |= EC_BAD_POSITION;
+    if (!ec_is_sane(q[c])) status |= EC_BAD_POSITION;
   }
   if (!(status & EC_BAD_POSITION)) {
     for (c = 0; c < robot->coordinates; ++c) memory->good_q[c] = q[c];
@@ -24,7 +27,7 @@ static inline unsigned ec_take(const ec_robot* robot, const double* q, const dou
     status |= EC_NOTHING_YET;
   }
   for (k = 0; torque && k < robot->joints; ++k) {
-    if (isfinite(torque[k])) {
+    if (ec_is_sane(torque[k])) {
       double* good = &memory->good_torque[k];
       *good = isfinite(*good) ? *good + robot->torque_gain * (torque[k] - *good) : torque[k];
     } else if (isfinite(memory->good_torque[k])) {
@@ -210,8 +213,8 @@ static inline unsigned ec_command_poses(const ec_robot* robot, const ec_pose* ta
   unsigned status = ec_take(robot, nominal, torque, support, 1, memory);
   int t, i, good = 1;
   for (t = 0; t < robot->tips; ++t) {
-    for (i = 0; i < 9; ++i) good = good && isfinite(targets[t].R[i]);
-    for (i = 0; i < 3; ++i) good = good && isfinite(targets[t].p[i]);
+    for (i = 0; i < 9; ++i) good = good && ec_is_sane(targets[t].R[i]);
+    for (i = 0; i < 3; ++i) good = good && ec_is_sane(targets[t].p[i]);
   }
   if (!good)
     return ec_command(robot, memory->good_q, torque, support, memory, command, residual) |

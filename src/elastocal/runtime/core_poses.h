@@ -14,8 +14,9 @@
 /* What a call has to say, as bits. 0 is fine. */
 enum {
   EC_FINE = 0,
-  EC_BAD_POSITION = 1,    /* a position is not finite: the last good positions were used */
-  EC_BAD_TORQUE = 2,      /* a torque is not finite: the last good one was used, or else statics */
+  EC_BAD_POSITION = 1,    /* a position is not finite, or beyond 1e9: the last good positions were
+                             used */
+  EC_BAD_TORQUE = 2,      /* so is a torque: the last good one was used, or else statics */
   EC_BAD_SUPPORT = 4,     /* no such foot: the last good support was used */
   EC_DEFLECTION_CUT = 8,  /* a deflection was larger than its limit: cut to it */
   EC_CORRECTION_CUT = 16, /* the limit of corrections, or of their change from the last call, keeps
