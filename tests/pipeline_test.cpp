@@ -225,6 +225,15 @@ TEST_F(Pipeline, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
             std::string::npos)
       << found[0];
 
+  // From the held-out trials on.
+  Recording since = held_out;
+  since.q.col(2).tail(39).array() += 2.0 * M_PI / 180.0;
+  const std::vector<std::string> seam =
+      contradictions(as_trial("swing", TrialKind::kCalibration, 1), since);
+  ASSERT_EQ(seam.size(), 1u);
+  EXPECT_NE(seam[0].find("; it may as well be off by the opposite in swing"), std::string::npos)
+      << seam[0];
+
   // A joint that moves few of the markers.
   Recording of_flange = as_trial("swing", TrialKind::kCalibration, 1);
   of_flange.q.col(6).array() += 1.5 * M_PI / 180.0;

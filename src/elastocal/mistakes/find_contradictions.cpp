@@ -23,6 +23,7 @@ constexpr double kSuspicious = 3.0;  // times the error on the trials of the est
 constexpr double kContradicted = 10.0;
 constexpr double kLeftByMistake = 0.3;  // of the error on held-out trials
 constexpr int kUpdatesTogether = 15;  // of the noise, of trials that seem to contradict each other
+constexpr int kAtTheSeam = 2;         // postures
 constexpr int kFilterSpreads = 2;     // postures beside exchanged ones, which the filter mixes
 /// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
 /// be as good in motion, which statics does not describe.
@@ -237,6 +238,25 @@ std::optional<Exchange> ExchangeWithinCluster(const Project& project, const Reco
   return found;
 }
 
+/// A joint that is off in all held-out trials may as well be off in those of the estimate; else
+/// empty.
+std::string OrInThoseOfTheEstimate(const RecordingFault& fault, const Recording& all,
+                                   const Recording& estimated) {
+  const bool to_the_end = fault.trial < 0 || fault.trial + 1 == std::ssize(all.trials);
+  const bool in_all_held_out = fault.kind == FaultKind::kJointOffset && fault.linkage < 0 &&
+                               fault.end == 0 && to_the_end &&
+                               std::abs(fault.posture - estimated.posture_count()) <= kAtTheSeam;
+  if (!in_all_held_out) return "";
+  std::string names;
+  for (const int trial : TrialsThatMove(all, fault.coordinate)) {
+    if (trial >= std::ssize(estimated.trials)) break;
+    names += (names.empty() ? "" : ", ") + estimated.trials[Size(trial)].name;
+  }
+  return names.empty() ? ""
+                       : "; it may as well be off by the opposite in " + names +
+                             ", which the recording does not tell: measure it there again";
+}
+
 /// Whether held-out trials are suspiciously worse than those of the estimate, and by how much.
 Contrast ContrastOf(const Project& project, const Recording& recording,
                     const ModelComparison& comparison, const ErrorTable& held_out_table) {
@@ -316,7 +336,8 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
     const GeneralFault general{
         faults.front(), robot.model, robot.base, all, comparison.largest_kind(), roughly};
     return {"trials for calibration and for validation contradict each other: " +
-            ExplainFault(general, project).text};
+            ExplainFault(general, project).text +
+            OrInThoseOfTheEstimate(faults.front(), all, recording)};
   }
   if (!(contrast.ratio() > kContradicted)) return {};
   char text[200];
