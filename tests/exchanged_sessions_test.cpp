@@ -19,7 +19,8 @@ class ExchangedSessions : public testing::Test {
     Random random(31);
     ObservedValues truth = RandomTruth(model_, 3, random);
     for (std::size_t e = 0; e < truth.effects.size(); ++e) {
-      truth.effects[e] << 25e-3 * static_cast<double>(e / 2), 0.0, 0.0;
+      const std::size_t session = e / 2;  // of two plates each
+      truth.effects[e] << 25e-3 * static_cast<double>(session), 0.0, 0.0;
     }
     sound_ = SimulateTouches(model_, truth, 90, 3, {0.5e-3, 1e-3, 1e-3}, random);
     for (std::size_t e = 0; e < sound_.effects.size(); ++e) {
