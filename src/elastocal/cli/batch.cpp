@@ -23,8 +23,8 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/files/output_set.hpp"
+#include "elastocal/fleet/batch_lock.hpp"
 #include "elastocal/fleet/fleet_report.hpp"
-#include "elastocal/fleet/folder_lock.hpp"
 #include "elastocal/fleet/task_process.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
@@ -84,7 +84,7 @@ void CheckFolder(const fs::path& output) {
     if (entry.path().filename() == "fleet.json") return;
     if (entry.path().string().ends_with(".done.json")) return;
     if (entry.path().filename() == ".batch") return;
-    if (entry.path().filename() == kFolderLockName) return;
+    if (entry.path().filename() == kBatchLockName) return;
   }
   throw InputError(
       output.string() +
@@ -279,7 +279,7 @@ int Batch(const BatchCommand& command) {
     outputs.Declare(output / ".batch");
     DeclareJson(command.common.json_file, outputs);
     outputs.Prepare();
-    const FolderLock lock(output);
+    const BatchLock lock(output);
     const std::vector<TaskEnd> ends = DoTasks(command, tasks, ranks.get());
     report = MakeFleetReport(tasks, ends, output, command.level);
     const std::vector<std::string> files = MakeFleetFiles(*report);

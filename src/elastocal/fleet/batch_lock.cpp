@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "elastocal/fleet/folder_lock.hpp"
+#include "elastocal/fleet/batch_lock.hpp"
 
 #include <array>
 #include <cerrno>
@@ -25,8 +25,8 @@ std::string HolderOf(int descriptor) {
 
 }  // namespace
 
-FolderLock::FolderLock(const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / kFolderLockName;
+BatchLock::BatchLock(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / kBatchLockName;
   descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) return;  // what is written to the folder says why
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
@@ -41,7 +41,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
   [[maybe_unused]] const ssize_t written = pwrite(descriptor_, number.data(), number.size(), 0);
 }
 
-FolderLock::~FolderLock() {
+BatchLock::~BatchLock() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
