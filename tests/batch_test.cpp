@@ -82,7 +82,7 @@ TEST_F(Batch, TwoInOneFolderAreRefused) {
   fs::create_directory(Folder("shared"));
   const std::string file = scratch_.Write("shared/.batch.lock", "4711\n");
   const int other = open(file.c_str(), O_RDWR);
-  ASSERT_EQ(flock(other, LOCK_EX), 0);
+  ASSERT_EQ(flock(other, LOCK_SH), 0);  // the least lock: a batch wants the folder for itself
   const ProgramResult second = Run("shared");
   EXPECT_EQ(second.exit_code, 3);
   EXPECT_NE(second.err.find("another batch (process 4711) is at work in this folder"),
