@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mistakes of a laboratory in the trials of a recording: which are named, and undone on request.
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/elastocal.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/find_contradictions.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+class TrialMistakes : public testing::Test {
+ protected:
+  Project project_ = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+};
+
+// The only trial of the estimate cannot show that one of its joints is off: the fit takes that for
+// an error of the robot. The held-out trial shows it.
+TEST_F(TrialMistakes, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const BaseParameters base = FindBaseParameters(model, project_.identifiability);
+  const Eigen::VectorXd truth = DrawErrors(model, base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
+  const auto as_trial = [&](const std::string& name, TrialKind kind, std::uint64_t seed) {
+    Recording recording = MakeSyntheticRecording(model, truth, {.postures = 40, .seed = seed});
+    recording.trials = {{name, kind, {project_.chains.front().name}}};
+    recording.trial.assign(40, 0);
+    return recording;
+  };
+  const auto estimate = [&](const Recording& recording) {
+    return CompareModels(Calibrate(model, recording, base, ModelKind::kGeometric, {}), model,
+                         recording, base, {});
+  };
+  const auto contradictions = [&](const Recording& recording, const Recording& held_out) {
+    const ModelComparison comparison = estimate(recording);
+    const HeldOut judged = JudgeOnTrials(comparison, held_out, {});
+    return FindContradictions(project_, {model, base}, recording, held_out, comparison,
+                              judged.table);
+  };
+  const auto left_out = [&](const Recording& recording, Recording& held_out) {
+    const ModelComparison comparison = estimate(recording);
+    const HeldOut judged = JudgeOnTrials(comparison, held_out, {});
+    return LeaveOutBriefExchange(project_, recording, comparison, judged.table, held_out);
+  };
+  Recording recording = as_trial("swing", TrialKind::kCalibration, 1);
+  const Recording held_out = as_trial("check", TrialKind::kRandom, 2);
+  EXPECT_TRUE(contradictions(recording, held_out).empty());
+
+  const std::vector<int>& markers = project_.clusters.back().markers;
+  Recording exchanged = recording;
+  exchanged.markers.middleCols<3>(3 * markers[0])
+      .swap(exchanged.markers.middleCols<3>(3 * markers[1]));
+  const std::vector<std::string> labels = contradictions(exchanged, held_out);
+  ASSERT_EQ(labels.size(), 1u);
+  EXPECT_NE(labels[0].find("seem exchanged in trial swing"), std::string::npos) << labels[0];
+  Recording in_part = held_out;
+  in_part.markers.block(10, 3 * markers[0], 8, 3)
+      .swap(in_part.markers.block(10, 3 * markers[1], 8, 3));
+  const std::string part = left_out(recording, in_part);
+  EXPECT_NE(part.find("seem exchanged in 8 postures of trial check"), std::string::npos) << part;
+  EXPECT_NE(part.find("left out"), std::string::npos) << part;
+  EXPECT_TRUE(in_part.markers.block(8, 3 * markers[0], 12, 3).array().isNaN().all());
+  EXPECT_TRUE(in_part.markers.block(20, 3 * markers[0], 20, 3).array().isFinite().all());
+  EXPECT_EQ(left_out(recording, in_part), "");
+  Recording mostly = held_out;  // who knows which part is right?
+  mostly.markers.block(10, 3 * markers[0], 25, 3)
+      .swap(mostly.markers.block(10, 3 * markers[1], 25, 3));
+  EXPECT_EQ(left_out(recording, mostly), "");
+  const std::vector<std::string> most = contradictions(recording, mostly);
+  ASSERT_EQ(most.size(), 1u);
+  EXPECT_NE(most[0].find("seem exchanged in 25 postures of trial check"), std::string::npos)
+      << most[0];
+
+  recording.q.col(2).array() += 2.0 * M_PI / 180.0;
+  const std::vector<std::string> found = contradictions(recording, held_out);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find(project_.tree.joints[2].name + ": its positions are off by"),
+            std::string::npos)
+      << found[0];
+
+  // From the held-out trials on.
+  Recording since = held_out;
+  since.q.col(2).tail(39).array() += 2.0 * M_PI / 180.0;
+  const std::vector<std::string> seam =
+      contradictions(as_trial("swing", TrialKind::kCalibration, 1), since);
+  ASSERT_EQ(seam.size(), 1u);
+  EXPECT_NE(seam[0].find("; it may as well be off by the opposite in swing"), std::string::npos)
+      << seam[0];
+
+  // A joint that moves few of the markers.
+  Recording of_flange = as_trial("swing", TrialKind::kCalibration, 1);
+  of_flange.q.col(6).array() += 1.5 * M_PI / 180.0;
+  const std::vector<std::string> of_few = contradictions(of_flange, held_out);
+  ASSERT_EQ(of_few.size(), 1u);
+  EXPECT_NE(of_few[0].find("flange_joint: its positions are off by"), std::string::npos)
+      << of_few[0];
+
+  // Limbs that were calibrated one after the other are held out together.
+  Recording together = held_out;
+  together.trials[0].chains = {project_.chains[0].name, project_.chains[1].name};
+  EXPECT_EQ(contradictions(recording, together).size(), 1u);
+}
+
+// Markers that a knock made two are unknown to the project.
+TEST_F(TrialMistakes, AFaultBesideAKnockIsNamedByTheHeldOutTrial) {
+  RecordedModel robot{MakeErrorModel(project_.tree, project_.markers, project_.placement), {}};
+  robot.base = FindBaseParameters(robot.model, project_.identifiability);
+  const Eigen::VectorXd truth =
+      DrawErrors(robot.model, robot.base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
+  const auto as_trial = [&](const std::string& name, TrialKind kind, std::uint64_t seed) {
+    Recording trial = MakeSyntheticRecording(robot.model, truth, {.postures = 40, .seed = seed});
+    trial.trials = {{name, kind, {project_.chains.front().name}}};
+    trial.trial.assign(40, 0);
+    return trial;
+  };
+  Recording recording = as_trial("swing", TrialKind::kCalibration, 1);
+  Recording held_out = as_trial("check", TrialKind::kRandom, 2);
+  recording.q.col(2).array() += 2.0 * M_PI / 180.0;
+  const MarkerCluster& cluster = project_.clusters.back();
+  robot.knocks = {{.cluster = cluster.name, .markers = cluster.markers, .posture = 20}};
+  SplitMarkers(robot.knocks, robot.model, recording);
+  AddUnseenMarkers(robot.model, held_out);
+  robot.base = FindBaseParameters(robot.model, project_.identifiability);
+  const ModelComparison comparison =
+      CompareModels(Calibrate(robot.model, recording, robot.base, ModelKind::kGeometric, {}),
+                    robot.model, recording, robot.base, {});
+  const ErrorTable judged = JudgeOnTrials(comparison, held_out, {}).table;
+  const auto of_largest = JudgeLargestOnTrials(comparison, held_out, {}).table.mean_rmse_3d;
+  ASSERT_EQ(of_largest.size(), 1u);
+  EXPECT_EQ(of_largest.begin()->second, judged.mean_rmse_3d.at(of_largest.begin()->first));
+  EXPECT_EQ(of_largest.begin()->first, comparison.largest_kind());
+  const std::vector<std::string> found =
+      FindContradictions(project_, robot, recording, held_out, comparison, judged);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find(project_.tree.joints[2].name + ": its positions are off by"),
+            std::string::npos)
+      << found[0];
+}
+
+// A correction that lets a robot explain the recording, if badly, is not taken for the right one.
+TEST_F(TrialMistakes, OfCorrectionsWithoutWhichNoRobotFitsTheBestIsNamed) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  Recording recording = MakeSyntheticRecording(
+      model, Eigen::VectorXd::Zero(model.parameter_count()), {.postures = 40});
+  recording.trials = {{"swing", TrialKind::kCalibration, {project_.chains.front().name}}};
+  recording.trial.assign(40, 0);
+  recording.q.col(2) *= -1.0;
+  recording.q.col(4).tail(15).setConstant(recording.q(25, 4));
+  const auto error_of = [](const Recording& corrected) {
+    return corrected.posture_count() < 40 ? 1e-4 : 0.05;
+  };
+  const std::vector<RecordingMistake> mistakes =
+      FindMistakesBy(project_, recording, std::numeric_limits<double>::infinity(), error_of);
+  ASSERT_FALSE(mistakes.empty());
+  EXPECT_EQ(mistakes[0].name, "frozen:" + project_.tree.joints[4].name);
+}
+
+// In one trial the joint hardly moves, so that its markers tell nothing; another one was logged by
+// a program that had it right.
+TEST_F(TrialMistakes, ASignIsUndoneInAllTrialsThatDoNotContradict) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const auto trial = [&](const std::string& name, std::uint64_t seed) {
+    Recording recording = MakeSyntheticRecording(
+        model, Eigen::VectorXd::Zero(model.parameter_count()), {.postures = 40, .seed = seed});
+    recording.trials = {{name, TrialKind::kCalibration, {project_.chains.front().name}}};
+    recording.trial.assign(40, 0);
+    return recording;
+  };
+  Recording still = trial("still", 2);
+  still.q.col(2).setConstant(0.01);
+  Measurements measured;
+  measured.calibration = JoinTrials(JoinTrials(trial("swing", 1), still), trial("right", 3));
+  const Eigen::MatrixXd q = measured.calibration.q;
+  measured.calibration.q.col(2).head(80) *= -1.0;
+  const std::string name = "sign:" + project_.tree.joints[2].name;
+  EXPECT_EQ(AcceptMistakes(project_, {name}, measured).size(), 1u);
+  EXPECT_EQ(measured.calibration.q, q);
+
+  // Where only a clock told it, it is undone as well.
+  measured.calibration = trial("still", 2);
+  measured.calibration.q.col(2).setConstant(-0.01);
+  measured.trials.resize(1);
+  measured.trials[0].clock_without = {name};
+  EXPECT_EQ(AcceptMistakes(project_, {name}, measured).size(), 1u);
+  EXPECT_EQ(measured.calibration.q(0, 2), 0.01);
+}
+
+// Cameras whose export has one axis the other way.
+TEST_F(TrialMistakes, MarkersOfTheOppositeHandAreNamed) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const Recording right = MakeSyntheticRecording(
+      model, Eigen::VectorXd::Zero(model.parameter_count()), {.postures = 40});
+  for (int axis = 0; axis < 3; ++axis) {
+    Recording wrong = right;
+    wrong.trials = {{"swing", TrialKind::kCalibration, {project_.chains.front().name}}};
+    wrong.trial.assign(40, 0);
+    for (int m = 0; m < wrong.marker_count(); ++m) wrong.markers.col(3 * m + axis) *= -1.0;
+    const auto error_of = [&](const Recording& corrected) {
+      return corrected.markers == Mirrored(wrong).markers ? 1e-4 : 0.05;
+    };
+    const std::vector<RecordingMistake> mistakes =
+        FindMistakesBy(project_, wrong, std::numeric_limits<double>::infinity(), error_of);
+    ASSERT_EQ(mistakes.size(), 1u);
+    EXPECT_EQ(mistakes[0].what, kLeftHanded);
+    EXPECT_EQ(DescribeMistake(mistakes[0]).find("--accept"), std::string::npos);
+  }
+  EXPECT_FALSE(LooksMirrored(model, right, 1e-3));
+}
+
+// A mistake that was named is undone by its name, in all trials, and by no other.
+TEST_F(TrialMistakes, MistakesAreUndoneOnRequest) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const auto as_trial = [&](TrialKind kind, std::uint64_t seed) {
+    Recording recording = MakeSyntheticRecording(
+        model, Eigen::VectorXd::Zero(model.parameter_count()), {.postures = 40, .seed = seed});
+    recording.trials = {{"swing", kind, {project_.chains.front().name}}};
+    recording.trial.assign(40, 0);
+    return recording;
+  };
+  Measurements measured;
+  measured.calibration = as_trial(TrialKind::kCalibration, 1);
+  measured.validation = as_trial(TrialKind::kRandom, 2);
+  measured.calibration_truth.resize(40);
+  measured.validation_truth.resize(40);
+  const Eigen::MatrixXd q = measured.calibration.q, q_validation = measured.validation.q;
+  const std::string joint = project_.tree.joints[2].name;
+  measured.calibration.q.col(2) *= -1.0;
+  measured.validation.q.col(2) *= -1.0;
+  ExpectInputError([&] { AcceptMistakes(project_, {"frozen:" + joint}, measured); },
+                   {"frozen:" + joint, "did you mean 'sign:" + joint});
+  const auto error_of = [&](const Recording& corrected) {
+    return (corrected.q - q).norm() < 1e-12 ? 0.1 : 0.9;
+  };
+  const std::vector<RecordingMistake> mistakes =
+      FindMistakesBy(project_, measured.calibration, 1.0, error_of);
+  ASSERT_EQ(mistakes.size(), 1u);
+  EXPECT_EQ(mistakes[0].name, "sign:" + joint);
+  EXPECT_EQ(mistakes[0].after, 0.1);
+  std::vector<double> told;
+  FindMistakesBy(project_, measured.calibration, 1.0, error_of, [&](const Recording&, double left) {
+    told.push_back(left);
+    return std::vector<LogSuspicion>();
+  });
+  EXPECT_EQ(told, (std::vector<double>{1.0, 0.1}));
+  const std::vector<std::string> undone = AcceptMistakes(project_, {"sign:" + joint}, measured);
+  EXPECT_EQ(undone.size(), 2u);
+  EXPECT_EQ(measured.calibration.q, q);
+  EXPECT_EQ(measured.validation.q, q_validation);
+  ExpectInputError([&] { AcceptMistakes(project_, {"sign:" + joint}, measured); },
+                   {"nothing in the recording points to it", "no mistake that has a name"});
+  ExpectInputError([&] { AcceptMistakes(project_, {"bogus"}, measured); },
+                   {"--accept bogus", "sign:JOINT, ", "offset:JOINT@TRIAL=SIZE", "scale=FACTOR"});
+
+  measured.calibration.q.col(2).tail(15).setConstant(measured.calibration.q(25, 2));
+  EXPECT_EQ(AcceptMistakes(project_, {"frozen:" + joint}, measured).size(), 1u);
+  EXPECT_LT(measured.calibration.posture_count(), 30);
+  EXPECT_EQ(measured.calibration_truth.size(), Size(measured.calibration.posture_count()));
+}
+
+}  // namespace
+}  // namespace elastocal
