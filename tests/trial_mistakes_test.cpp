@@ -8,6 +8,7 @@
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/find_contradictions.hpp"
+#include "elastocal/mistakes/log_alternatives.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/expect_input_error.hpp"
