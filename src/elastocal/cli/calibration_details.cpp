@@ -92,16 +92,21 @@ std::string ExcitationText(const CalibrationRun& run) {
       Names(result, HardlyExcited(result.model.parameters, excitation)));
 }
 
+/// Pairs of waist and markers, which have the strongest correlations, say little of the robot.
 std::string Correlations(const CalibrationResult& result) {
+  const auto name = [&](int i) { return result.model.parameters[i].name; };
+  std::vector<Correlation> pairs = result.correlations;
+  std::erase_if(pairs, [&](const Correlation& pair) {
+    return IsExternal(result.model.parameters[pair.first].kind) ||
+           IsExternal(result.model.parameters[pair.second].kind);
+  });
   std::string text;
-  for (std::size_t i = 0; i < std::min(kMostListed, result.correlations.size()); ++i) {
-    const Correlation& pair = result.correlations[i];
-    text += fmt::format("  {:+.3f}  {}, {}\n", pair.coefficient,
-                        result.model.parameters[pair.first].name,
-                        result.model.parameters[pair.second].name);
+  for (std::size_t i = 0; i < std::min(kMostListed, pairs.size()); ++i) {
+    text += fmt::format("  {:+.3f}  {}, {}\n", pairs[i].coefficient, name(pairs[i].first),
+                        name(pairs[i].second));
   }
-  return "\nStrong correlations\n" + (text.empty() ? "  none\n" : text) +
-         More(result.correlations.size());
+  return "\nStrong correlations of the robot's parameters\n" + (text.empty() ? "  none\n" : text) +
+         More(pairs.size());
 }
 
 }  // namespace

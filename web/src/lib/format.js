@@ -61,10 +61,20 @@ export function probability(p) {
   return p < 1e-4 ? '< 0.0001' : significant(p, 2);
 }
 
+/** A whole number's digits with a true minus, and narrow spaces between thousands. */
+const grouped = (digits) => digits.replace('-', '−').replace(/\B(?=(\d{3})+(?!\d))/g, '\u202f');
+
 /** 12 345, with narrow spaces. */
 export function count(value) {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
-  return String(Math.round(value)).replace('-', '−').replace(/^−0$/, '0').replace(/\B(?=(\d{3})+(?!\d))/g, '\u202f');
+  return grouped(String(Math.round(value))).replace(/^−0$/, '0');
+}
+
+/** A mark of an axis: as many decimals as it has; nothing where the axis has no text. */
+export function tick(value) {
+  if (value === null || value === undefined) return '';
+  const [whole, decimals] = String(Number(value.toPrecision(9))).split('.');
+  return decimals === undefined ? grouped(whole) : `${grouped(whole)}.${decimals}`;
 }
 
 /** '1 posture', '2 postures'. */

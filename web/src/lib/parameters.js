@@ -10,6 +10,14 @@ export function splitName(name) {
 const MARKER = /^marker\./;
 const WAIST = /^waist\.T0\./;
 
+/** Of the recording, not of the robot. */
+export const isExternal = (name) => MARKER.test(name) || WAIST.test(name);
+
+/** The first of `pairs`, which come with the strongest first; those of waist and markers only on request. */
+export function strongestPairs(pairs, withExternal, most = 8) {
+  return pairs.filter((p) => withExternal || !(isExternal(p.first) || isExternal(p.second))).slice(0, most);
+}
+
 /** 'marker', 'waist', 'leg' (lumped compliance) or 'joint'. */
 export function family(parameter, legs) {
   if (MARKER.test(parameter.name)) return 'marker';

@@ -3,7 +3,7 @@ import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 
 import {cssColour, h} from './dom.js';
-import {significant} from './format.js';
+import {significant, tick} from './format.js';
 import {legend} from './legend.js';
 import {onTheme} from './theme.js';
 
@@ -15,7 +15,7 @@ function axis(label, extra = {}) {
   return {
     label, font: FONT, labelFont: FONT, stroke: colour, labelSize: 22, labelGap: 2, gap: 6,
     grid: {stroke: cssColour('--grid'), width: 1}, ticks: {stroke: cssColour('--grid'), width: 1, size: 4},
-    ...extra,
+    values: (u, splits) => splits.map(tick), ...extra,
   };
 }
 

@@ -5,6 +5,7 @@ import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {figure} from '../lib/figure.js';
 import {fixed} from '../lib/format.js';
+import {isExternal, strongestPairs} from '../lib/parameters.js';
 import {isDark, onTheme} from '../lib/theme.js';
 
 function drawMap(canvas, matrix, shown) {
@@ -19,8 +20,6 @@ function drawMap(canvas, matrix, shown) {
   context.putImageData(image, 0, 0);
 }
 
-const external = (name) => name.startsWith('marker.') || name.startsWith('waist.');
-
 function colourScale() {
   const bar = h('span', {class: 'bar', 'aria-hidden': 'true'});
   const paint = () => bar.style.setProperty('background', `linear-gradient(90deg, ${[-1, -0.5, 0, 0.5, 1].map((t) => css(diverging(t, isDark()))).join(', ')})`);
@@ -29,12 +28,16 @@ function colourScale() {
   return h('p', {class: 'colour-bar'}, h('span', {}, '−1'), bar, h('span', {}, '+1'));
 }
 
+function pairItem(p) {
+  return h('li', {}, h('span', {}, `${p.first} and ${p.second}`), h('strong', {}, fixed(p.coefficient, Math.abs(p.coefficient) > 0.99 ? 4 : 2)));
+}
+
 /** The map of correlations between estimates; moving on it, by pointer or arrow keys, names pairs. */
 export function correlationFigure(correlation, pairs) {
   if (!correlation?.names?.length) return null;
   const {names} = correlation;
   const matrix = unpackTriangle(signedBytes(correlation.lower), names.length);
-  let shown = names.map((_, i) => i).filter((i) => !external(names[i]));
+  let shown = [];
   const canvas = h('canvas', {class: 'map', tabindex: '0', role: 'img', 'aria-label': 'Map of correlations between estimated parameters; arrow keys move over it'});
   const readout = h('p', {class: 'readout'}, 'Point at the map, or move over it with the arrow keys, to read the names of a pair.');
   let at = [0, 0];
@@ -55,17 +58,21 @@ export function correlationFigure(correlation, pairs) {
     tell();
   });
   const draw = () => drawMap(canvas, matrix, shown);
-  onTheme(draw);
-  draw();
-  const all = h('label', {class: 'check'}, h('input', {type: 'checkbox', onchange: (e) => {
-    shown = names.map((_, i) => i).filter((i) => e.target.checked || !external(names[i]));
+  const list = h('ol', {class: 'pairs'});
+  const listed = h('div', {}, h('h4', {}, 'Strongest pairs'), list);
+  const choose = (withExternal) => {
+    shown = names.map((_, i) => i).filter((i) => withExternal || !isExternal(names[i]));
+    const strongest = strongestPairs(pairs, withExternal);
+    list.replaceChildren(...strongest.map(pairItem));
+    listed.hidden = strongest.length === 0;
     draw();
-  }}), 'show waist and markers too');
-  const strongest = pairs.slice(0, 8).map((p) => h('li', {}, h('span', {}, `${p.first} and ${p.second}`), h('strong', {}, fixed(p.coefficient, Math.abs(p.coefficient) > 0.99 ? 4 : 2))));
+  };
+  const all = h('label', {class: 'check'}, h('input', {type: 'checkbox', onchange: (e) => choose(e.target.checked)}), 'show waist and markers too');
+  onTheme(draw);
+  choose(false);
   return figure({
     title: 'Correlation of the estimates', controls: all,
-    body: h('div', {class: 'map-block'}, h('div', {}, canvas, colourScale(), readout),
-      strongest.length > 0 && h('div', {}, h('h4', {}, 'Strongest pairs'), h('ol', {class: 'pairs'}, ...strongest))),
+    body: h('div', {class: 'map-block'}, h('div', {}, canvas, colourScale(), readout), listed),
     note: 'Each row and each column is an estimated parameter, in the order of the table above. Where a pair comes near +1 or −1, the recording determines a combination of the two much better than either one.',
     data: {name: 'correlation.csv', text: () => toCsv(['parameter', ...names], names.map((name, i) => [name, ...Array.from(matrix[i], (x) => Number(x.toFixed(2)))]))},
   });

@@ -6,7 +6,7 @@ import {differences, floats, signedBytes, unpackTriangle} from '../../src/lib/bi
 import {diverging, sequential} from '../../src/lib/colours.js';
 import {columnsToCsv, toCsv} from '../../src/lib/csv.js';
 import {chainRows, medianCurves} from '../../src/lib/curves.js';
-import {byJoint, countByStatus, family, kindsOf, offsetsOverTime, splitName} from '../../src/lib/parameters.js';
+import {byJoint, countByStatus, family, kindsOf, offsetsOverTime, splitName, strongestPairs} from '../../src/lib/parameters.js';
 import {pictureAt, playedRobots, readPlayback} from '../../src/lib/playback.js';
 import {table2Rows} from '../../src/lib/table2.js';
 import {stiffness, stiffnessInterval, userUnit} from '../../src/lib/units.js';
@@ -48,6 +48,13 @@ test('a triangle of correlations becomes a symmetric matrix', () => {
   assert.equal(matrix[0][1], -0.5);
   assert.equal(matrix[1][0], -0.5);
   assert.equal(matrix[1][1], 1);
+});
+
+test('the strongest pairs are of the joints, and of waist and markers only on request', () => {
+  const pairs = [['marker.A.x', 'marker.B.x'], ['leg_6.r', 'marker.A.x'], ['waist.T0.z', 'leg_1.d'], ['leg_1.d', 'leg_2.d']].map(([first, second]) => ({first, second, coefficient: 1}));
+  assert.deepEqual(strongestPairs(pairs, false), pairs.slice(3));
+  assert.deepEqual(strongestPairs(pairs, true), pairs);
+  assert.deepEqual(strongestPairs(pairs, true, 2), pairs.slice(0, 2));
 });
 
 test('CSV quotes, keeps gaps, and hands no formula to a spreadsheet', () => {

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {count, fixed, flatten, interval, list, plural, probability, significant, withSd} from '../../src/lib/format.js';
+import {count, fixed, flatten, interval, list, plural, probability, significant, tick, withSd} from '../../src/lib/format.js';
 import {bestModel, judgedErrors, undetermined, verdict} from '../../src/lib/verdict.js';
 
 const good = {
@@ -103,4 +103,8 @@ test('remarks ask for a look, objections forbid', () => {
   assert.equal(bad.word, 'Do not deploy');
   assert.match(bad.rest, /does not explain/);
   assert.equal(verdict({status: 'not converged', message: 'out of iterations'}).rest, 'out of iterations');
+});
+
+test('marks of an axis are written as the numbers of the tables', () => {
+  assert.deepEqual([0, 1400, -50, -1.5, 0.1 + 0.2, 12345.25, null].map(tick), ['0', '1\u202f400', '−50', '−1.5', '0.3', '12\u202f345.25', '']);
 });
