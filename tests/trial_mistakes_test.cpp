@@ -108,6 +108,46 @@ TEST_F(TrialMistakes, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
   EXPECT_EQ(contradictions(recording, together).size(), 1u);
 }
 
+// Each of the two trials fits by itself, with one of the two markers left out as an outlier in
+// each: the estimate is good, and has both markers in one place.
+TEST_F(TrialMistakes, LabelsExchangedInOneOfTwoTrialsAreNamedAndContradictHeldOutOnes) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const BaseParameters base = FindBaseParameters(model, project_.identifiability);
+  const Eigen::VectorXd truth = DrawErrors(model, base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
+  const auto trial = [&](const std::string& name, TrialKind kind, std::uint64_t seed) {
+    Recording recording = MakeSyntheticRecording(model, truth, {.postures = 40, .seed = seed});
+    recording.trials = {{name, kind, {project_.chains.front().name}}};
+    recording.trial.assign(40, 0);
+    return recording;
+  };
+  const std::vector<int>& markers = project_.clusters.back().markers;
+  Recording wrong = trial("wrong", TrialKind::kCalibration, 2);
+  wrong.markers.middleCols<3>(3 * markers[0]).swap(wrong.markers.middleCols<3>(3 * markers[1]));
+  Measurements measured;
+  measured.calibration = JoinTrials(trial("swing", TrialKind::kCalibration, 1), wrong);
+  const Recording& recording = measured.calibration;
+  const ModelComparison comparison = CompareModels(
+      Calibrate(model, recording, base, ModelKind::kGeometric, {}), model, recording, base, {});
+  EXPECT_EQ(comparison.largest().outliers.size(), 80u);
+
+  const std::vector<RecordingMistake> mistakes =
+      FindRecordingMistakes(project_, 1, measured, recording, comparison.largest());
+  ASSERT_EQ(mistakes.size(), 1u);
+  EXPECT_EQ(mistakes[0].name, "labels:TOOL_1,TOOL_2");
+  EXPECT_NE(mistakes[0].what.find("are exchanged in trial wrong"), std::string::npos)
+      << mistakes[0].what;
+  EXPECT_LT(mistakes[0].after, 1e-3);
+
+  const Recording held_out = trial("check", TrialKind::kRandom, 3);
+  const HeldOut judged = JudgeOnTrials(comparison, held_out, {});
+  const std::vector<std::string> found =
+      FindContradictions(project_, {model, base}, recording, held_out, comparison, judged.table);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find("held-out trials of arm contradict those of the estimate"),
+            std::string::npos)
+      << found[0];
+}
+
 // Markers that a knock made two are unknown to the project.
 TEST_F(TrialMistakes, AFaultBesideAKnockIsNamedByTheHeldOutTrial) {
   RecordedModel robot{MakeErrorModel(project_.tree, project_.markers, project_.placement), {}};

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
+#include "elastocal/calibration/exchanged_markers.hpp"
+#include "elastocal/calibration/nominal_postures.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/math/transform.hpp"
-#include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
 namespace {
@@ -16,13 +18,6 @@ constexpr double kLeastDisplaced = 0.05;      // m: two clusters
 constexpr double kLeastWrongDistance = 0.01;  // m: two markers
 constexpr double kFarNearer = 0.4;            // of what was wrong is left at most
 constexpr std::size_t kMostPostures = 8;      // of a trial, looked at
-constexpr int kLeastPlacing = 3;              // markers
-
-/// Nominal marker positions of one posture in the root link's frame.
-struct NominalPosture {
-  int posture = 0;
-  Eigen::Matrix3Xd markers;
-};
 
 class LabelSuspicionSearch {
  public:
@@ -32,13 +27,17 @@ class LabelSuspicionSearch {
 
   std::vector<LabelSuspicion> Run() {
     for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
-      const std::vector<NominalPosture> postures = PosturesOf(trial);
+      const std::vector<NominalPosture> postures =
+          NominalPostures(model_, recording_, trial, kMostPostures);
       for (std::size_t a = 0; a < clusters_.size(); ++a) {
         TryWithin(trial, clusters_[a], postures);
         for (std::size_t b = a + 1; b < clusters_.size(); ++b) {
           TryClusters(trial, clusters_[a], clusters_[b], postures);
         }
       }
+    }
+    for (LabelSuspicion& one : FindExchangedMarkers(model_, recording_, clusters_)) {
+      if (!IsKnown(one)) found_.push_back(std::move(one));
     }
     std::stable_sort(found_.begin(), found_.end(),
                      [](const LabelSuspicion& a, const LabelSuspicion& b) {
@@ -48,23 +47,10 @@ class LabelSuspicionSearch {
   }
 
  private:
-  /// Postures of a trial, evenly spread.
-  std::vector<NominalPosture> PosturesOf(int trial) const {
-    std::vector<int> all;
-    for (int i = 0; i < recording_.posture_count(); ++i) {
-      if (recording_.trial[i] == trial) all.push_back(i);
-    }
-    ErrorModel at_origin = model_;
-    at_origin.T_ref_waist = Transform::Identity();
-    const Geometry geometry =
-        ApplyErrors(at_origin, Eigen::VectorXd::Zero(at_origin.parameter_count()));
-    std::vector<NominalPosture> postures;
-    const std::size_t stride = 1 + all.size() / kMostPostures;
-    for (std::size_t k = 0; k < all.size(); k += stride) {
-      postures.push_back(
-          {all[k], MarkerPositions(at_origin, geometry, recording_.q.row(all[k]).transpose())});
-    }
-    return postures;
+  bool IsKnown(const LabelSuspicion& one) const {
+    return std::any_of(found_.begin(), found_.end(), [&](const LabelSuspicion& known) {
+      return known.of_a == one.of_a && known.of_b == one.of_b;
+    });
   }
 
   bool AllSeen(int posture, const std::vector<int>& markers) const {
@@ -79,11 +65,13 @@ class LabelSuspicionSearch {
     double before = 0.0;
     double after = 0.0;
     int count = 0;
+    std::vector<int> both = a.markers;
+    both.insert(both.end(), b.markers.begin(), b.markers.end());
     for (const NominalPosture& nominal : postures) {
       const bool sees_a = AllSeen(nominal.posture, a.markers);
       const bool sees_b = AllSeen(nominal.posture, b.markers);
       if (!sees_a && !sees_b) continue;
-      const auto T_ref_waist = PlaceWithout(nominal, a, b);
+      const auto T_ref_waist = PlaceRoot(recording_, nominal, both);
       if (!T_ref_waist) continue;
       for (std::size_t k = 0; k < a.markers.size(); ++k) {
         const Eigen::Vector3d at_a = *T_ref_waist * nominal.markers.col(a.markers[k]);
@@ -103,23 +91,6 @@ class LabelSuspicionSearch {
       }
     }
     Keep(trial, a, b, count, before, after, kLeastDisplaced);
-  }
-
-  std::optional<Transform> PlaceWithout(const NominalPosture& nominal, const LabelCluster& a,
-                                        const LabelCluster& b) const {
-    Eigen::Matrix3Xd from(3, recording_.marker_count()), to(3, recording_.marker_count());
-    int count = 0;
-    for (int m = 0; m < recording_.marker_count(); ++m) {
-      const auto in = [m](const LabelCluster& cluster) {
-        return std::find(cluster.markers.begin(), cluster.markers.end(), m) !=
-               cluster.markers.end();
-      };
-      if (!Seen(recording_, nominal.posture, m) || in(a) || in(b)) continue;
-      from.col(count) = nominal.markers.col(m);
-      to.col(count++) = MarkerPosition(recording_, nominal.posture, m);
-    }
-    if (count < kLeastPlacing) return std::nullopt;
-    return FitRigid(from.leftCols(count), to.leftCols(count));
   }
 
   /// Medians of a cluster's distances over the postures; NaN where never seen together.
@@ -205,12 +176,28 @@ class LabelSuspicionSearch {
 
 /// Whether the labels are exchanged in a posture.
 bool IsExchanged(const Recording& recording, const LabelSuspicion& suspicion, int posture) {
-  if (!recording.trials.empty()) {
-    return std::binary_search(suspicion.trials.begin(), suspicion.trials.end(),
-                              recording.trial[posture]);
+  if (!suspicion.postures.empty()) {
+    return std::binary_search(suspicion.postures.begin(), suspicion.postures.end(), posture);
   }
-  return suspicion.postures.empty() ||
-         std::binary_search(suspicion.postures.begin(), suspicion.postures.end(), posture);
+  return recording.trials.empty() ||
+         std::binary_search(suspicion.trials.begin(), suspicion.trials.end(),
+                            recording.trial[posture]);
+}
+
+/// The postures of a trial that are exchanged; none: all of those that see both.
+std::optional<int> ExchangedPart(const Recording& recording, const LabelSuspicion& suspicion,
+                                 int trial) {
+  int exchanged = 0;
+  bool all = true;
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    if (recording.trial[i] != trial) continue;
+    const bool here = IsExchanged(recording, suspicion, i);
+    exchanged += here ? 1 : 0;
+    all = all && (here || !Seen(recording, i, suspicion.of_a.front()) ||
+                  !Seen(recording, i, suspicion.of_b.front()));
+  }
+  if (all) return std::nullopt;
+  return exchanged;
 }
 
 }  // namespace
@@ -237,11 +224,17 @@ Recording WithoutExchange(const Recording& recording, const LabelSuspicion& susp
 std::string DescribeSuspicion(const LabelSuspicion& suspicion, const Recording& recording) {
   std::string text = "the labels of " + suspicion.a + " and " + suspicion.b + " are exchanged";
   if (!recording.trials.empty()) {
+    std::string wholes, parts;
     for (const int trial : suspicion.trials) {
-      text +=
-          (trial == suspicion.trials.front() ? " in trial " : ", ") + recording.trials[trial].name;
+      const std::string& name = recording.trials[trial].name;
+      const std::optional<int> part = ExchangedPart(recording, suspicion, trial);
+      if (part) {
+        parts += (parts.empty() ? "" : ", ") + std::to_string(*part) + " postures of trial " + name;
+      } else {
+        wholes += (wholes.empty() ? "trial " : ", ") + name;
+      }
     }
-    return text;
+    return text + " in " + wholes + (wholes.empty() || parts.empty() ? "" : " and in ") + parts;
   }
   if (suspicion.postures.empty()) return text;
   return text + " in " + std::to_string(suspicion.postures.size()) + " postures";

@@ -10,11 +10,11 @@
 
 namespace elastocal {
 
-/// Labels that seem exchanged throughout trials or in postures of a table: those of two clusters,
-/// or of two markers.
+/// Labels that seem exchanged throughout trials, in parts of them or in postures of a table: those
+/// of two clusters, or of two markers.
 struct LabelSuspicion {
   std::vector<int> trials = {};    ///< ascending
-  std::vector<int> postures = {};  ///< of a table, ascending; empty: all
+  std::vector<int> postures = {};  ///< ascending; empty: all of these trials, or of the table
   std::string a, b;                ///< names of the clusters or markers
   std::vector<int> of_a, of_b;     ///< markers of the recording, one by one
   double before = 0.0;  ///< of these from where the nominal robot has them, or from their nominal
@@ -24,7 +24,9 @@ struct LabelSuspicion {
 /// Exchanged labels that are far from any error of placement, in a recording of trials: two
 /// clusters each of which is where the nominal robot has the other (by at least 50 mm; one of them
 /// may not be part of the trial), or two
-/// markers of a cluster whose distances to the others are each other's nominal ones (by 10 mm). An
+/// markers of a cluster whose distances to the others are each other's nominal ones (by 10 mm) or,
+/// where these are too much alike, that lie in the cluster, turned as the nominal robot turns it,
+/// where the other should. An
 /// exchange within a cluster that no other trial shows does no harm, because the markers' positions
 /// are estimated: whether the recording fits better without it, a fit has to say. `clusters` refer
 /// to the markers of the recording. The one that explains most first.
@@ -34,8 +36,8 @@ std::vector<LabelSuspicion> FindLabelSuspicions(const ErrorModel& model, const R
 /// The recording with these labels exchanged back, in the trials or the table's postures.
 Recording WithoutExchange(const Recording& recording, const LabelSuspicion& suspicion);
 
-/// "the labels of LFOOT and RFOOT are exchanged in trial a, b"; of a table "... in 10 postures", or
-/// nothing more.
+/// "the labels of LFOOT and RFOOT are exchanged in trial a, b"; of a part of a trial "... in 10
+/// postures of trial a"; of a table "... in 10 postures", or nothing more.
 std::string DescribeSuspicion(const LabelSuspicion& suspicion, const Recording& recording);
 
 }  // namespace elastocal

@@ -25,7 +25,8 @@ class LogCheckTest : public testing::Test {
                                  {.name = "b", .chains = {}, .support = {robot_.right}}},
                                 kPlayed)) {
     Random random(5);
-    Eigen::VectorXd truth = Eigen::VectorXd::Zero(robot_.model.parameter_count());
+    Eigen::VectorXd& truth = truth_;
+    truth.setZero(robot_.model.parameter_count());
     for (int i = 0; i < robot_.model.parameter_count(); ++i) {
       const Parameter& parameter = robot_.model.parameters[i];
       if (parameter.kind == ParameterKind::kWaistPose || IsElastic(parameter.kind)) continue;
@@ -41,13 +42,13 @@ class LogCheckTest : public testing::Test {
   }
 
   /// Markers as they are at the recording's positions.
-  void See(Recording& recording) {
+  void See(Recording& recording) { See(robot_.model, geometry_, recording); }
+
+  void See(const ErrorModel& model, Geometry& geometry, Recording& recording) const {
     for (int i = 0; i < recording.posture_count(); ++i) {
-      PlaceWaist(waist_[Size(i)], Vector6d::Zero(), geometry_);
+      PlaceWaist(waist_[Size(i)], Vector6d::Zero(), geometry);
       recording.markers.row(i) =
-          MarkerPositions(robot_.model, geometry_, recording.q.row(i).transpose())
-              .reshaped()
-              .transpose();
+          MarkerPositions(model, geometry, recording.q.row(i).transpose()).reshaped().transpose();
     }
   }
 
@@ -73,6 +74,7 @@ class LogCheckTest : public testing::Test {
   }
 
   const StandingBiped robot_ = {};
+  Eigen::VectorXd truth_;
   Geometry geometry_;
   std::vector<Transform> waist_;
   Recording recording_;
@@ -226,6 +228,43 @@ TEST_F(LogCheckTest, ExchangedLabelsAreTold) {
   EXPECT_EQ(DescribeSuspicion(found[0], changed),
             "the labels of WAIST_1 and WAIST_2 are exchanged in trial a, b");
   EXPECT_TRUE(WithoutExchange(changed, found[0]).markers == recording_.markers);
+}
+
+TEST_F(LogCheckTest, MarkersExchangedInAPartOfATrialAreToldByTheRobotWhereDistancesAreAlike) {
+  const auto clusters = Clusters();
+  const std::vector<int>& trunk = clusters[1].markers;
+  ErrorModel model = robot_.model;
+  const Eigen::Vector3d first = model.markers[Size(trunk[0])].p_link_marker;
+  const Eigen::Vector3d side = model.markers[Size(trunk[1])].p_link_marker - first;
+  model.markers[Size(trunk[2])].p_link_marker = first + 0.5 * side + 0.05 * side.unitOrthogonal();
+  Geometry geometry = ApplyErrors(model, truth_);
+  Recording clean = recording_;
+  See(model, geometry, clean);
+  EXPECT_TRUE(FindLabelSuspicions(model, clean, clusters).empty());
+  const auto exchanged = [&](int from, int count) {
+    Recording changed = clean;
+    changed.markers.block(from, 3 * trunk[0], count, 3)
+        .swap(changed.markers.block(from, 3 * trunk[1], count, 3));
+    return changed;
+  };
+  // Everywhere it does no harm: the project may have them the other way round.
+  EXPECT_TRUE(FindLabelSuspicions(model, exchanged(0, 2 * kPlayed), clusters).empty());
+
+  Recording changed = exchanged(0, kPlayed + 3);
+  // A posture that does not show the two is taken for what those before it are.
+  clean.markers.block<1, 3>(5, 3 * trunk[0]).setConstant(kNaN);
+  changed.markers.block<1, 3>(5, 3 * trunk[1]).setConstant(kNaN);
+  const auto found = FindLabelSuspicions(model, changed, clusters);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(
+      DescribeSuspicion(found[0], changed),
+      "the labels of TRUNK_1 and TRUNK_2 are exchanged in trial a and in 3 postures of trial b");
+  const Eigen::MatrixXd corrected = WithoutExchange(changed, found[0]).markers;
+  EXPECT_TRUE((corrected.array() == clean.markers.array() ||
+               (corrected.array().isNaN() && clean.markers.array().isNaN()))
+                  .all());
+  EXPECT_NEAR(found[0].before, side.norm(), 0.05 * side.norm());  // the robot turns the link
+  EXPECT_LT(found[0].after, 0.1 * side.norm());
 }
 
 }  // namespace

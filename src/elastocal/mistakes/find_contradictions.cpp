@@ -257,10 +257,22 @@ std::string OrInThoseOfTheEstimate(const RecordingFault& fault, const Recording&
                              ", which the recording does not tell: measure it there again";
 }
 
+/// Without what the estimate left out.
+Recording AsUsed(const Recording& recording, const CalibrationResult& result) {
+  Recording used = recording;
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    for (int m = 0; m < recording.marker_count(); ++m) {
+      if (!result.used(i, m)) used.markers.block<1, 3>(i, 3 * m).setConstant(kNaN);
+    }
+  }
+  return used;
+}
+
 /// Whether held-out trials are suspiciously worse than those of the estimate, and by how much.
 Contrast ContrastOf(const Project& project, const Recording& recording,
                     const ModelComparison& comparison, const ErrorTable& held_out_table) {
-  const ErrorTable fitted = JudgeOnTrials(comparison, recording, project.calibration).table;
+  const Recording used = AsUsed(recording, comparison.largest());
+  const ErrorTable fitted = JudgeOnTrials(comparison, used, project.calibration).table;
   const ModelKind kind = comparison.largest().kind;
   Contrast contrast = LargestContrast(fitted, held_out_table, kind);
   contrast.largest_of_clusters =

@@ -22,9 +22,10 @@ std::string LeaveOutBriefExchange(const Project& project, const Recording& recor
 /// Where held-out trials contradict those of the estimate. A fault in the only trial that exercises
 /// a joint is one that this trial cannot show: it is fitted as an error of the robot. So where the
 /// largest model errs on the held-out trials of a group of chains, or on a cluster in them, by more
-/// than three times its error on the trials of the estimate, all trials are fitted together and the
-/// fault that explains most of what is left is named; from ten times on the contradiction itself is
-/// an objection. Clean recordings stay below three, so nothing more is fitted for them.
+/// than three times its error on what it used of the trials of the estimate, all trials are fitted
+/// together and the fault that explains most of what is left is named; from ten times on the
+/// contradiction itself is an objection. Clean recordings stay below three, so nothing more is
+/// fitted for them.
 std::vector<std::string> FindContradictions(const Project& project, const RecordedModel& robot,
                                             const Recording& recording, const Recording& held_out,
                                             const ModelComparison& comparison,

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "elastocal/calibration/label_check.hpp"
+
+namespace elastocal {
+
+/// Two markers of a cluster whose labels seem exchanged in some trials or in parts of them,
+/// whatever the distances in the cluster: from the mean of the cluster each lies where the other
+/// should, once the cluster is turned as the nominal robot turns its link. Both must be seen, and
+/// three markers of other clusters, which place the root link. None where all postures that see the
+/// two show the same: that does no harm, because the markers' positions are estimated.
+std::vector<LabelSuspicion> FindExchangedMarkers(const ErrorModel& model,
+                                                 const Recording& recording,
+                                                 const std::vector<LabelCluster>& clusters);
+
+}  // namespace elastocal

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "elastocal/measurement/recording.hpp"
+#include "elastocal/robot/error_model.hpp"
+
+namespace elastocal {
+
+/// Where the nominal robot has all markers of a recording in one of its postures, m (3 x markers),
+/// in the root link's frame.
+struct NominalPosture {
+  int posture = 0;
+  Eigen::Matrix3Xd markers;
+};
+
+/// About `most` postures of a trial, evenly spread. `model` has the recording's markers.
+std::vector<NominalPosture> NominalPostures(const ErrorModel& model, const Recording& recording,
+                                            int trial, std::size_t most);
+
+/// The root link in the frame of the markers, by those that are seen but for `without`; none where
+/// fewer than three are left.
+std::optional<Transform> PlaceRoot(const Recording& recording, const NominalPosture& nominal,
+                                   const std::vector<int>& without);
+
+}  // namespace elastocal
