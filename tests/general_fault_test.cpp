@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/calibration/carrying_link.hpp"
 #include "elastocal/calibration/coarse_positions.hpp"
 #include "elastocal/calibration/loose_clusters.hpp"
 #include "elastocal/calibration/odd_postures.hpp"
@@ -291,6 +292,26 @@ TEST_F(GeneralFaults, MarkersThatAreElsewhereInEachPostureAreNamed) {
   EXPECT_EQ(little.find("cluster TOOL: its markers are elsewhere"), 0u) << little;
   EXPECT_EQ(little.find("too loose"), std::string::npos) << little;
   EXPECT_EQ(robot.find("the robot as a whole is elsewhere"), 0u) << robot;
+}
+
+TEST_F(GeneralFaults, MarkersOnAnotherLinkThanTheProjectSaysAreNamedWithIt) {
+  std::vector<Marker> markers = project_.markers;
+  for (Marker& marker : markers) {
+    if (marker.name.starts_with("FOREARM")) marker.link = FindLink(project_.tree, "upper_arm");
+  }
+  const ErrorModel truth = MakeErrorModel(project_.tree, markers, project_.placement);
+  const Recording recorded = MakeSyntheticRecording(
+      truth, Eigen::VectorXd::Zero(truth.parameter_count()), {.postures = 48, .seed = 3});
+  const auto found = FindCarryingLink(model_, recorded, SeenClusters(project_, recorded));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->cluster, "FOREARM");
+  EXPECT_EQ(found->own, "forearm");
+  EXPECT_EQ(found->carrier, "upper_arm");
+  EXPECT_LT(found->on_carrier, 1e-3);
+  EXPECT_FALSE(FindCarryingLink(model_, recorded_, SeenClusters(project_, recorded_)));
+  // A joint whose positions are wrong moves several clusters.
+  recorded_.q.col(CoordinateOf("turret_joint")).setZero();
+  EXPECT_FALSE(FindCarryingLink(model_, recorded_, SeenClusters(project_, recorded_)));
 }
 
 // With -z up, springs take up a part of a gain beside a slip; both explain all with z up.

@@ -24,12 +24,11 @@ struct LabelSuspicion {
 /// Exchanged labels that are far from any error of placement, in a recording of trials: two
 /// clusters each of which is where the nominal robot has the other (by at least 50 mm; one of them
 /// may not be part of the trial), or two
-/// markers of a cluster whose distances to the others are each other's nominal ones (by 10 mm) or,
-/// where these are too much alike, that lie in the cluster, turned as the nominal robot turns it,
-/// where the other should. An
-/// exchange within a cluster that no other trial shows does no harm, because the markers' positions
-/// are estimated: whether the recording fits better without it, a fit has to say. `clusters` refer
-/// to the markers of the recording. The one that explains most first.
+/// markers of a cluster whose distances to the others are each other's nominal ones (by 10 mm), or
+/// two markers each of which is where the other should be (FindExchangedMarkers). An exchange
+/// within a cluster that no other trial shows does no harm, because the markers' positions are
+/// estimated: whether the recording fits better without it, a fit has to say. `clusters` refer to
+/// the markers of the recording. The one that explains most first.
 std::vector<LabelSuspicion> FindLabelSuspicions(const ErrorModel& model, const Recording& recording,
                                                 const std::vector<LabelCluster>& clusters);
 

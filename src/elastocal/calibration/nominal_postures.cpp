@@ -12,7 +12,7 @@ std::vector<NominalPosture> NominalPostures(const ErrorModel& model, const Recor
                                             int trial, std::size_t most) {
   std::vector<int> all;
   for (int i = 0; i < recording.posture_count(); ++i) {
-    if (recording.trial[i] == trial) all.push_back(i);
+    if (trial < 0 || recording.trial[i] == trial) all.push_back(i);
   }
   ErrorModel at_origin = model;
   at_origin.T_ref_waist = Transform::Identity();

@@ -16,7 +16,8 @@ struct NominalPosture {
   Eigen::Matrix3Xd markers;
 };
 
-/// About `most` postures of a trial, evenly spread. `model` has the recording's markers.
+/// About `most` postures of a trial (-1: of all), evenly spread. `model` has the recording's
+/// markers.
 std::vector<NominalPosture> NominalPostures(const ErrorModel& model, const Recording& recording,
                                             int trial, std::size_t most);
 

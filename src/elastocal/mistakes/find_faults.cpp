@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/calibration/camera_scale.hpp"
+#include "elastocal/calibration/carrying_link.hpp"
 #include "elastocal/calibration/coarse_positions.hpp"
 #include "elastocal/calibration/loose_clusters.hpp"
 #include "elastocal/calibration/odd_postures.hpp"
@@ -219,6 +220,10 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
   for (const RecordingMistake& mistake :
        FindRecordingMistakes(project, seed, as_recorded, recording, comparison.largest())) {
     faults.push_back(DescribeMistake(mistake));
+  }
+  if (faults.empty()) {
+    const auto carried = FindCarryingLink(robot.model, recording, SeenClusters(project, recording));
+    if (carried) return {Describe(*carried)};
   }
   const std::vector<RecordingFault> gears = FindImpossibleGears(comparison.largest());
   const std::string of_slides = ScaleOfSlides(gears, comparison.largest(), project.calibration);
