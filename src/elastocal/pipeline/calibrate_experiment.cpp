@@ -266,6 +266,8 @@ void JudgeRun(Work& work) {
     JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.deployment.urdf_kind,
                  run.verdict);
   }
+  // What a table that is plainly wrong does to a fit is no other fault.
+  if (!work.sound) run.verdict.objections.clear();
   run.verdict.objections.insert(run.verdict.objections.begin(), run.faults.begin(),
                                 run.faults.end());
   run.coverage = FindCoverage(work.project, work.measured);
