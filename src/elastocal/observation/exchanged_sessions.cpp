@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
 #include <map>
 #include <set>
@@ -214,13 +215,23 @@ class SessionSearch {
     return labels;
   }
 
+  /// Where the heaps are as large as the sessions: rows that were exchanged are still as many, and
+  /// touches in the air are not.
   void Label(const std::vector<int>& all, const std::vector<Eigen::VectorXd>& left, int row,
              double at, const std::pair<std::string, std::string>& names, Labels& labels) const {
+    constexpr double kAsMany = 0.15;  // of all
     const auto below = [&](int i) { return left[Size(i)][row] <= at; };
-    const auto agree = std::count_if(all.begin(), all.end(), [&](int i) {
-      return below(i) == (said_[Size(observations_.all[Size(i)].posture)] == names.first);
-    });
+    const auto of_first = [&](int i) {
+      return said_[Size(observations_.all[Size(i)].posture)] == names.first;
+    };
+    const auto agree =
+        std::count_if(all.begin(), all.end(), [&](int i) { return below(i) == of_first(i); });
     const bool first_is_below = 2 * agree >= std::ssize(all);
+    const auto before = std::count_if(all.begin(), all.end(), of_first);
+    const auto after =
+        std::count_if(all.begin(), all.end(), [&](int i) { return below(i) == first_is_below; });
+    const auto change = static_cast<double>(std::abs(after - before));
+    if (change > kAsMany * static_cast<double>(all.size())) return;
     for (const int i : all) {
       labels[Size(observations_.all[Size(i)].posture)] =
           below(i) == first_is_below ? names.first : names.second;
