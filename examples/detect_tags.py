@@ -8,6 +8,9 @@ Needs the package libapriltag3. It reads PNM and baseline JPEG itself; other ima
 `frame` is the name of the image without its ending: the column `frame` of the table of observations says which row it belongs to.
 Pixels count from the upper left corner of the image, so that the centre of the first pixel is at 0.5; images of a camera's own
 calibration by other tools may have it at 0 (half a pixel of centre_px).
+
+Corners of sharp images are off by 0.1 px, with noise and lenses that bend as well. Of tags with a covered corner, or that are
+blurred by half a cell, the few that are found at all are off by 1 px: take these images out.
 """
 
 import argparse
@@ -82,8 +85,8 @@ class Detector:
         return image
 
     def tags(self, file):
-        """By tag its four corners (u, v), from below left of the upright tag counterclockwise. A tag that is there twice
-        tells nothing and is left out."""
+        """By tag its four corners (u, v), from below left of the upright tag counterclockwise; and the tags that are there
+        twice, which tell nothing and are left out."""
         image = self.read(file)
         found = self.library.apriltag_detector_detect(self.detector, image)
         tags, twice = {}, set()
@@ -94,7 +97,11 @@ class Detector:
             tags[one.id] = [tuple(corner) for corner in one.corners]
         self.library.apriltag_detections_destroy(found)
         self.files.image_u8_destroy(image)
-        return {tag: corners for tag, corners in tags.items() if tag not in twice}
+        return {tag: corners for tag, corners in tags.items() if tag not in twice}, twice
+
+
+def named(files):
+    return ", ".join(file.name for file in files[:5]) + (f" and {len(files) - 5} more" if len(files) > 5 else "")
 
 
 def main():
@@ -109,19 +116,30 @@ def main():
     files = sorted(file for file in arguments.images.glob("*") if file.is_file() and not file.name.startswith("."))
     if not files:
         sys.exit(f"{arguments.images}: there are no images in this folder")
-    rows, seen = [], set()
+    rows, seen, without, doubled = [], set(), [], {}
     for file in files:
         if any(file.stem == other.stem for other in files if other is not file):
             sys.exit(f"{file}: another image has the same name but for its ending")
-        for tag, corners in sorted(detector.tags(file).items()):
-            if arguments.tags and tag not in arguments.tags:
+        tags, twice = detector.tags(file)
+        wanted = {tag for tag in tags if not arguments.tags or tag in arguments.tags}
+        for tag in twice:
+            doubled.setdefault(tag, []).append(file)
+        if not wanted:
+            without.append(file)
+        for tag, corners in sorted(tags.items()):
+            if tag not in wanted:
                 continue
             seen.add(tag)
             for k, (u, v) in enumerate(corners):
                 rows.append([file.stem, str(tag), str(k), f"{u:.4f}", f"{v:.4f}"] + ([arguments.camera] if arguments.camera else []))
     header = ["frame", "tag", "corner", "u", "v"] + (["camera"] if arguments.camera else [])
     arguments.output.write_text("".join(",".join(row) + "\n" for row in [header, *rows]))
-    print(f"{len(rows) // 4} tags in {len(files)} images; tags {', '.join(map(str, sorted(seen)))}")
+    print(f"{len(rows) // 4} tags in {len(files)} images" + (f"; tags {', '.join(map(str, sorted(seen)))}" if seen else ""))
+    for tag, of in sorted(doubled.items()):
+        print(f"tag {tag} is there twice, and left out, in {len(of)} images: {named(of)}", file=sys.stderr)
+    if without:
+        print(f"no tag{' of these' if arguments.tags else ''} in {len(without)} images: {named(without)} (another family, "
+              "covered at its rim or across, less than 2 pixels a cell, or blurred by half a cell?)", file=sys.stderr)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/interruption.hpp"
 #include "elastocal/math/progress.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 
 // What the parts of the Python module share. Each part adds classes and functions of one subject.
@@ -69,6 +70,14 @@ py::object FromJson(const std::string& text);
 /// One path, or several.
 Paths PathsOf(const py::object& paths);
 
+/// What a function takes as a project: a Project, or the file of one.
+struct ProjectOrFile {
+  Project project;
+};
+
+/// Raises TypeError for anything else, and throws InputError for a file that is wrong.
+Project ProjectOf(const py::handle& given);
+
 /// Positions by coordinate of the tree [rad or m]: an array, or a dict of joints, the others
 /// being at zero. Throws InputError with `what` for another size or an unknown joint.
 Eigen::VectorXd PositionsOf(const py::object& q, const Names& coordinates, const std::string& what);
@@ -95,3 +104,17 @@ const Value& Named(const char* argument, const std::string& name,
 }
 
 }  // namespace elastocal::python
+
+namespace pybind11::detail {
+
+template <>
+struct type_caster<elastocal::python::ProjectOrFile> {
+  PYBIND11_TYPE_CASTER(elastocal::python::ProjectOrFile, const_name("elastocal.Project"));
+
+  bool load(handle given, bool) {
+    value.project = elastocal::python::ProjectOf(given);
+    return true;
+  }
+};
+
+}  // namespace pybind11::detail

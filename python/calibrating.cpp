@@ -18,6 +18,13 @@ void Expect(bool usual, const char* argument, const std::string& why) {
   throw InputError(std::string(argument) + ": not with contact or instruments: " + why);
 }
 
+/// Raises TypeError, as Python does for an argument that is missing.
+Paths RecordingsOf(const py::object& recordings, const std::string& argument) {
+  if (!recordings.is_none()) return PathsOf(recordings);
+  throw py::type_error("missing argument '" + argument +
+                       "': the file or folder of a recording, or a list of them, was expected");
+}
+
 /// A calibration that was made in this process, from markers or from touches and instruments.
 struct PyCalibration {
   Project project;
@@ -131,19 +138,20 @@ PyCalibration CalibrateInstruments(const Project& project, const Paths& files,
           kNaN,    run.result,       std::move(texts)};
 }
 
-PyCalibration CalibrateFiles(const Project& project, const py::object& recordings,
+PyCalibration CalibrateFiles(const ProjectOrFile& project_or_file, const py::object& recordings,
                              std::optional<int> folds, const std::string& fold_by,
                              std::optional<std::uint64_t> seed, int threads,
                              const std::string& zero_offsets, const Path& prior,
                              std::optional<double> days, const Names& accept,
                              const StepProgress& progress) {
+  const Project& project = project_or_file.project;
   ExpectWithin("threads", threads, 1, 64);
   if (folds) ExpectWithin("folds", *folds, 0, 100000);
   if (days) {
     ExpectBounded("calibrate --days", *days);
     if (prior.empty()) throw InputError("days: without the earlier calibration, prior");
   }
-  const Paths files = PathsOf(recordings);
+  const Paths files = RecordingsOf(recordings, "recordings");
   const CalibrateArguments given{
       folds,
       fold_by,
@@ -195,10 +203,12 @@ void ExpectOneRecording(const Paths& files) {
                    "instruments");
 }
 
-py::object Validate(const Project& project, const Path& calibration, const py::object& recording,
-                    bool frozen, const std::optional<std::string>& refit,
-                    std::optional<std::uint64_t> seed, const Names& accept) {
-  const Paths files = PathsOf(recording);
+py::object Validate(const ProjectOrFile& project_or_file, const Path& calibration,
+                    const py::object& recording, bool frozen,
+                    const std::optional<std::string>& refit, std::optional<std::uint64_t> seed,
+                    const Names& accept) {
+  const Project& project = project_or_file.project;
+  const Paths files = RecordingsOf(recording, "recording");
   const bool refit_table = refit && Named<bool>("refit", *refit, {{"table", true}});
   if (project.contact) {
     Expect(!frozen, "frozen", "it is about markers; touches have refit='table'");
@@ -215,10 +225,11 @@ py::object Validate(const Project& project, const Path& calibration, const py::o
   }));
 }
 
-py::object Check(const Project& project, const Path& calibration, const py::object& recording,
-                 double level, double days, std::optional<std::uint64_t> seed, const Names& accept,
-                 bool new_markers) {
-  const Paths files = PathsOf(recording);
+py::object Check(const ProjectOrFile& project_or_file, const Path& calibration,
+                 const py::object& recording, double level, double days,
+                 std::optional<std::uint64_t> seed, const Names& accept, bool new_markers) {
+  const Project& project = project_or_file.project;
+  const Paths files = RecordingsOf(recording, "recording");
   ExpectBounded("check --level", level);
   ExpectBounded("check --days", days);
   const CheckOptions options{.joints = {.level = level, .new_markers = new_markers},
@@ -313,7 +324,7 @@ void AddCalibrationClass(py::module_& module) {
 void AddCalibrating(py::module_& module) {
   AddCalibrationClass(module);
   module.def(
-      "calibrate", CalibrateFiles, "project"_a, "recordings"_a, py::kw_only(),
+      "calibrate", CalibrateFiles, "project"_a, "recordings"_a = py::none(), py::kw_only(),
       "folds"_a = std::nullopt, "fold_by"_a = "posture", "seed"_a = std::nullopt, "threads"_a = 1,
       "zero_offsets"_a = "origin", "prior"_a = "", "days"_a = std::nullopt, "accept"_a = Names(),
       "progress"_a = StepProgress(),
@@ -324,14 +335,15 @@ void AddCalibrating(py::module_& module) {
       "(None: one). "
       "accept: mistakes of the recording to undo. progress: called with (step, done, total).");
   module.def(
-      "validate", Validate, "project"_a, "calibration"_a, "recording"_a, py::kw_only(),
+      "validate", Validate, "project"_a, "calibration"_a, "recording"_a = py::none(), py::kw_only(),
       "frozen"_a = false, "refit"_a = std::nullopt, "seed"_a = std::nullopt, "accept"_a = Names(),
       "Applies a saved calibration to another recording (with contact or instruments, tables of "
       "observations): the dict of validation.json. frozen: waist and markers are not fitted anew. "
       "refit: 'table' registers tables and trackers anew, for each posture by the others.");
   module.def(
-      "check", Check, "project"_a, "calibration"_a, "recording"_a, py::kw_only(), "level"_a = 0.05,
-      "days"_a = 1.0, "seed"_a = std::nullopt, "accept"_a = Names(), "new_markers"_a = false,
+      "check", Check, "project"_a, "calibration"_a, "recording"_a = py::none(), py::kw_only(),
+      "level"_a = 0.05, "days"_a = 1.0, "seed"_a = std::nullopt, "accept"_a = Names(),
+      "new_markers"_a = false,
       "Tells from a few postures (with contact or instruments, tables of observations) whether a "
       "saved calibration still holds: the dict of `elastocal check --json`, of markers with the "
       "'next_postures' to record where several joints may have changed. "

@@ -30,13 +30,21 @@ Value Cast(const py::handle& object, const std::string& expected) {
   }
 }
 
+bool IsPath(const py::handle& object) {
+  return py::isinstance<py::str>(object) ||
+         py::isinstance(object, py::module_::import("os").attr("PathLike"));
+}
+
 }  // namespace
 
+Project ProjectOf(const py::handle& given) {
+  if (py::isinstance<Project>(given)) return given.cast<const Project&>();
+  if (IsPath(given)) return ReadProject(given.cast<Path>());
+  return Cast<const Project&>(given, "project: a Project, or its file (str or Path),");
+}
+
 Paths PathsOf(const py::object& paths) {
-  const py::object os = py::module_::import("os");
-  if (py::isinstance<py::str>(paths) || py::isinstance(paths, os.attr("PathLike"))) {
-    return {paths.cast<Path>()};
-  }
+  if (IsPath(paths)) return {paths.cast<Path>()};
   return Cast<Paths>(paths, "a file (str or Path), or a list of files,");
 }
 

@@ -70,10 +70,11 @@ PyDesign DesignForMarkers(const Project& project, const PostureDesignOptions& op
   return design;
 }
 
-PyDesign Design(const Project& project, const Names& chains, std::optional<int> count,
+PyDesign Design(const ProjectOrFile& project_or_file, const Names& chains, std::optional<int> count,
                 int max_count, double plateau, int block, const std::string& algorithm,
                 const std::string& criterion, bool elastic, bool curves, bool certificate,
                 std::uint64_t seed, const Progress& progress) {
+  const Project& project = project_or_file.project;
   if (count) ExpectWithin("count", *count, 1, 1000);
   ExpectWithin("max_count", max_count, 1, 1000);
   ExpectWithin("block", block, 1, 100);
@@ -107,9 +108,10 @@ PyDesign Design(const Project& project, const Names& chains, std::optional<int> 
   });
 }
 
-PyDesign DesignAfter(const Project& project, const Path& calibration, bool check, int count,
-                     const Names& chains, const Names& joints, double days, double marker_noise_mm,
-                     std::uint64_t seed, const Progress& progress) {
+PyDesign DesignAfter(const ProjectOrFile& project_or_file, const Path& calibration, bool check,
+                     int count, const Names& chains, const Names& joints, double days,
+                     double marker_noise_mm, std::uint64_t seed, const Progress& progress) {
+  const Project& project = project_or_file.project;
   ExpectWithin("count", count, 1, 1000);
   ExpectBounded("check --days", days);
   ExpectBounded("assess --marker-noise-mm", marker_noise_mm);

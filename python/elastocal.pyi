@@ -197,7 +197,7 @@ class _MotionDict(TypedDict, total=False):
 _Postures = Union[Design, _Path, Mapping[str, Union[ArrayLike, Sequence[Mapping[str, float]]]]]
 
 def calibrate(
-    project: Project,
+    project: Union[Project, _Path],
     recordings: Union[_Path, Sequence[_Path]],
     *,
     folds: Optional[int] = None,
@@ -215,7 +215,7 @@ def calibrate(
     for a table. fold_by: what a fold leaves out, 'posture', 'trial' or 'session'. prior: the folder of an earlier
     calibration, `days` ago (None: one). accept: mistakes of the recording to undo. progress: called with (step, done, total)."""
 def validate(
-    project: Project,
+    project: Union[Project, _Path],
     calibration: _Path,
     recording: Union[_Path, Sequence[_Path]],
     *,
@@ -228,7 +228,7 @@ def validate(
     dict of validation.json. frozen: waist and markers are not fitted anew. refit: 'table' registers tables and
     trackers anew, for each posture by the others."""
 def check(
-    project: Project,
+    project: Union[Project, _Path],
     calibration: _Path,
     recording: Union[_Path, Sequence[_Path]],
     *,
@@ -263,7 +263,7 @@ def info(
 ) -> dict[str, Any]:
     """What is in a recording or a posture table: the dict of `elastocal info --json`."""
 def write_table(
-    project: Project,
+    project: Union[Project, _Path],
     file: _Path,
     positions: ArrayLike,
     markers: ArrayLike,
@@ -274,7 +274,7 @@ def write_table(
     rad or m, by Project.joints. markers: (postures, markers, 3), m, NaN where not seen, by Project.markers unless
     `marker_names` names them. Columns have the default names of docs/formats.md."""
 def design(
-    project: Project,
+    project: Union[Project, _Path],
     *,
     chains: Sequence[str] = ...,
     count: Optional[int] = None,
@@ -293,7 +293,7 @@ def design(
     name. count: exactly so many for each chain. elastic: compliances too. curves: also what other algorithms reach.
     progress: called with (done, total). Raises InfeasibleError where a chain has no such postures."""
 def design_after(
-    project: Project,
+    project: Union[Project, _Path],
     calibration: _Path,
     *,
     check: bool = False,
@@ -310,7 +310,7 @@ def design_after(
     instruments, `count` in all). days: since the calibration. marker_noise_mm: of a coordinate, errors of the model
     included."""
 def plan(
-    project: Project,
+    project: Union[Project, _Path],
     postures: Optional[_Postures] = None,
     *,
     kind: Optional[str] = None,
@@ -338,7 +338,7 @@ def plan(
     'repeatability'. robots: so many with errors try it. Arguments are those of the command, in the unit of their
     suffix, else SI. Raises InfeasibleError where there is no motion or it breaks a limit."""
 def simulate(
-    project: Project,
+    project: Union[Project, _Path],
     folder: _Path,
     *,
     motion: Optional[Union[Plan, _Path, _MotionDict]] = None,

@@ -91,13 +91,14 @@ void ExpectPlayable(const MotionPlan& plan, bool balanced) {
   if (!why.empty()) throw Infeasible("no motion: " + why.substr(0, why.size() - 2));
 }
 
-PyPlan PlanFor(const Project& project, const py::object& postures,
+PyPlan PlanFor(const ProjectOrFile& project_or_file, const py::object& postures,
                const std::optional<std::string>& kind, int count, double move_s, double rest_s,
                std::optional<double> zmp_margin_mm, std::optional<double> lift_mm,
                std::optional<double> inset_mm, std::optional<double> approach_mm,
                std::optional<double> torque_share, double velocity_share, bool balanced, int robots,
                double floor_friction, double leg_geometry_scale, bool stabilised, int threads,
                std::uint64_t seed, const Progress& progress) {
+  const Project& project = project_or_file.project;
   if (postures.is_none() != kind.has_value()) {
     throw InputError("postures or kind: one of them was expected");
   }

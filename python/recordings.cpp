@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include "bindings.hpp"
 #include "elastocal/io/posture_table.hpp"
 #include "elastocal/io/recorded_files.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/recording_info.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal::python {
 namespace {
@@ -65,8 +69,28 @@ py::object Info(const Path& file, const std::string& unit, const std::string& to
 
 using Cube = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-void WriteTable(const Project& project, const Path& file, const RowMajor& positions,
+/// Throws InputError for positions that no reader would take.
+void ExpectPositions(const Recording& recording, const Names& joints) {
+  for (Eigen::Index i = 0; i < recording.q.rows(); ++i) {
+    for (Eigen::Index c = 0; c < recording.q.cols(); ++c) {
+      if (std::isfinite(recording.q(i, c))) continue;
+      throw InputError("positions: " + FormatNumber(recording.q(i, c)) + " of joint " +
+                       Quote(joints[Size(c)]) + " in posture " + std::to_string(i) +
+                       "; a number was expected, because the table has a row for each posture");
+    }
+    for (Eigen::Index m = 0; 3 * m < recording.markers.cols(); ++m) {
+      const Eigen::Vector3d at = recording.markers.row(i).segment<3>(3 * m).transpose();
+      if (at.allFinite() || at.array().isNaN().all()) continue;
+      throw InputError("markers: " + Quote(recording.marker_names[Size(m)]) + " in posture " +
+                       std::to_string(i) +
+                       "; three numbers were expected or, where it was not seen, three NaN");
+    }
+  }
+}
+
+void WriteTable(const ProjectOrFile& project_or_file, const Path& file, const RowMajor& positions,
                 const Cube& markers, const std::optional<Names>& marker_names) {
+  const Project& project = project_or_file.project;
   Recording recording;
   recording.q = positions;
   if (marker_names) {
@@ -87,6 +111,7 @@ void WriteTable(const Project& project, const Path& file, const RowMajor& positi
                      std::to_string(count) + ", 3) was expected");
   }
   recording.markers = Eigen::Map<const RowMajor>(markers.data(), postures, 3 * count);
+  ExpectPositions(recording, CoordinateNames(project.tree));
   WritePostureTable(file, recording, project.tree);
 }
 

@@ -106,12 +106,13 @@ Outcome SimulateInstruments(const Project& project, std::vector<ChainPostures> p
   return {FormatObservedSimulation(recording), recording.warnings};
 }
 
-py::object Simulate(const Project& project, const Path& folder, const py::object& motion,
-                    const py::object& postures, const std::string& trials,
+py::object Simulate(const ProjectOrFile& project_or_file, const Path& folder,
+                    const py::object& motion, const py::object& postures, const std::string& trials,
                     const std::optional<std::string>& kind, const Names& chains,
                     const py::object& settings, bool nominal, bool matched, bool free, bool force,
                     int count, std::uint64_t seed, std::optional<std::uint64_t> robot_seed,
                     int threads, const Progress& progress) {
+  const Project& project = project_or_file.project;
   if (folder.empty()) throw InputError("folder: a name was expected");
   if (!motion.is_none() && !postures.is_none()) {
     throw InputError("motion and postures: one of them was expected");

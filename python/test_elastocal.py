@@ -148,6 +148,18 @@ class Arrays(unittest.TestCase):
             self.assertIn(("cross-validation", 2, 2), steps)
             with self.assertRaisesRegex(elastocal.InputError, r"markers: an array of \(60, 1, 3\)"):
                 elastocal.write_table(project, table, postures, np.zeros((60, 3)))
+            bad = postures.copy()
+            bad[3, robot.joints.index("arm_left_4_joint")] = np.nan
+            with self.assertRaisesRegex(elastocal.InputError, "positions: nan of joint 'arm_left_4_joint' in posture 3;"):
+                elastocal.write_table(project, table, bad, np.zeros((60, 1, 3)))
+            half = np.zeros((60, 1, 3))
+            half[7, 0, 1] = np.nan
+            with self.assertRaisesRegex(elastocal.InputError, "markers: 'HAND' in posture 7; three numbers"):
+                elastocal.write_table(project, table, postures, half)
+            for call in (lambda: elastocal.calibrate(file), lambda: elastocal.validate(file, folder),
+                         lambda: elastocal.check(file, folder)):
+                with self.assertRaisesRegex(TypeError, "missing argument 'recordings?': the file or folder of a recording"):
+                    call()
             self.assertEqual(elastocal.info(table)["postures"]["markers"], [{"name": "HAND", "seen": 60}])
             with self.assertRaisesRegex(elastocal.InputError, "this is a posture table"):
                 elastocal.read(table)

@@ -166,7 +166,7 @@ TEST_F(ArmWithCause, SpringsThatItHidesAreFoundBesideIt) {
 }
 
 TEST_F(ArmWithCause, SpringsThatTheProjectForbidsAreSaidWhereCausesStandForThem) {
-  constexpr const char* kWords = "holds them rigid";
+  constexpr const char* kWords = "holds joints rigid";
   const auto warned = [&](const ContactRun& run) {
     return std::any_of(run.warnings.begin(), run.warnings.end(), [&](const std::string& warning) {
       return warning.find(kWords) != std::string::npos;
@@ -180,6 +180,10 @@ TEST_F(ArmWithCause, SpringsThatTheProjectForbidsAreSaidWhereCausesStandForThem)
   const ContactRun bent = Calibrate(q_);
   EXPECT_FALSE(bent.extra.empty());
   EXPECT_TRUE(warned(bent));
+  project_.elasticity.torsion = {"turret_joint"};  // others alone are held rigid
+  const ContactRun partly = Calibrate(q_);
+  EXPECT_FALSE(partly.extra.empty());
+  EXPECT_TRUE(warned(partly));
 }
 
 TEST_F(ArmWithCause, WhatExplainsAsMuchIsNamedBesideIt) {

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/io/observation_table.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/pipeline/contact_check.hpp"
+#include "elastocal/pipeline/contact_validation.hpp"
 #include "tests/arm_with_tracker.hpp"
 #include "tests/expect_input_error.hpp"
 
@@ -47,6 +49,39 @@ TEST_F(CheckedArm, TheJointThatMovedIsNamedWithItsSize) {
   EXPECT_NEAR(change.value, 4e-3, 4.0 * change.sd);
   EXPECT_LT(change.sd, 1e-3);
   EXPECT_LT(run.updated.rows[0].rms, run.calibrated.rows[0].rms);
+}
+
+// The tracker stood elsewhere in the second file: three rows of each are in the other one.
+TEST_F(CheckedArm, RowsInTheFileOfAnotherSessionAreNamed) {
+  const std::vector<Eigen::VectorXd> first = poses_;
+  MoveTracker();
+  const std::vector<Eigen::VectorXd> second = poses_;
+  const auto tables = [&](int exchanged) {
+    poses_ = first;
+    for (int i = 0; i < exchanged; ++i) poses_[Size(i)] = second[Size(i)];
+    const std::filesystem::path one = Table(q_.topRows(12), "first.csv");
+    poses_ = second;
+    for (int i = 12; i < 12 + exchanged; ++i) poses_[Size(i)] = first[Size(i)];
+    return std::vector{one, Table(q_.middleRows(12, 12), "second.csv", 12)};
+  };
+  EXPECT_EQ(CheckStatus(CheckContacts(project_, calibration_, tables(0))), "unchanged");
+  const ContactCheck check = CheckContacts(project_, calibration_, tables(3));
+  EXPECT_EQ(CheckStatus(check), "recording wrong");
+  const auto names_rows = [](const std::vector<std::string>& texts) {
+    return std::any_of(texts.begin(), texts.end(), [](const std::string& text) {
+      return text.starts_with("6 of 24 rows seem to be of another session") &&
+             text.find("first.csv:2, 3, 4 of") != std::string::npos &&
+             text.find("second.csv:2, 3, 4 of") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(names_rows(check.alternatives))
+      << (check.alternatives.empty() ? "" : check.alternatives.front());
+  const ContactValidation sound = ValidateContacts(project_, calibration_, tables(0), true);
+  EXPECT_TRUE(sound.better());
+  EXPECT_FALSE(names_rows(sound.warnings));
+  const ContactValidation wrong = ValidateContacts(project_, calibration_, tables(3), true);
+  EXPECT_TRUE(names_rows(wrong.objections))
+      << (wrong.objections.empty() ? "" : wrong.objections.front());
 }
 
 TEST_F(CheckedArm, AWrongGainOrScaleOrRowIsNoRobotThatChanged) {

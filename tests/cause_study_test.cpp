@@ -342,6 +342,12 @@ TEST(ChooseModel, SpringsThatTheProjectForbidsAreMissedWhereCausesStandForThem) 
   const ModelChoice choice = ChooseModel(measured, {}, 5, 2, rigid);
   EXPECT_FALSE(rigid.elasticity.extra.empty());
   EXPECT_TRUE(choice.misses_springs);
+  // So are those of some joints alone; where all are elastic, none is missed.
+  Project partly = ArmProject(), named = Elastic(ArmProject());
+  partly.elasticity.torsion = {"torso*", "arm_left_5_joint"};
+  EXPECT_TRUE(ChooseModel(measured, {}, 5, 2, partly).misses_springs);
+  EXPECT_FALSE(partly.elasticity.extra.empty());
+  EXPECT_FALSE(ChooseModel(measured, {}, 5, 2, named).misses_springs);
 }
 
 }  // namespace

@@ -76,6 +76,16 @@ TEST(WarningGroups, ListsOfAnyLengthAreAlike) {
             expected);
 }
 
+TEST(WarningGroups, TheNameOfAFileMayHaveBlanks) {
+  EXPECT_EQ(GroupWarnings({"day 2/arm A-B.csv:45: the row comes twice",
+                           "day 2/arm A-C.csv:7: the row comes twice"}),
+            std::vector<std::string>{
+                "day 2/arm A-B.csv:45: the row comes twice (likewise day 2/arm A-C.csv:7)"});
+  // What is no file is read word by word.
+  EXPECT_EQ(GroupWarnings({"joint arm.left: it is late", "joint arm.right: it is late"}),
+            std::vector<std::string>{"joint arm.left: it is late (likewise arm.right)"});
+}
+
 TEST(WarningGroups, RepeatedSentencesAreCounted) {
   EXPECT_EQ(GroupWarnings({"17 outlying positions removed", "12 outlying positions removed"}),
             std::vector<std::string>{"17 outlying positions removed (2 times)"});

@@ -57,6 +57,19 @@ with tempfile.TemporaryDirectory() as folder:
         assert (frame, name, corner) == ("f1", "7", str(k)), lines[1 + k]
         off = np.hypot(*(np.array(pixels, float) - place[:2] / place[2]))
         assert off < 0.15, (lines[1 + k], off)  # px: a tenth is usual at such edges
-    subprocess.run([sys.executable, SCRIPT, images, "-o", table, "--tags", "8"], check=True)
+    said = subprocess.run([sys.executable, SCRIPT, images, "-o", table, "--tags", "8"], check=True, capture_output=True, text=True)
     assert len(table.read_text().splitlines()) == 1
+    assert said.stderr.startswith("no tag of these in 1 images: f1.pgm"), said.stderr
+    # Two prints of one tag tell nothing; a bar across the tag, and nothing is found.
+    grey = drawn(7)
+    half = grey[::2, ::2]
+    (images / "f2.pgm").write_bytes(b"P5\n%d %d\n255\n" % (WIDTH, HEIGHT // 2) + np.hstack([half, half]).tobytes())
+    bar = grey.copy()
+    bar[:, 320:345] = 90
+    (images / "f3.pgm").write_bytes(b"P5\n%d %d\n255\n" % (WIDTH, HEIGHT) + bar.tobytes())
+    said = subprocess.run([sys.executable, SCRIPT, images, "-o", table], check=True, capture_output=True, text=True)
+    assert len(table.read_text().splitlines()) == 5
+    assert said.stdout.startswith("1 tags in 3 images; tags 7"), said.stdout
+    assert "tag 7 is there twice, and left out, in 1 images: f2.pgm\n" in said.stderr, said.stderr
+    assert "no tag in 2 images: f2.pgm, f3.pgm" in said.stderr, said.stderr
 print("corners found")

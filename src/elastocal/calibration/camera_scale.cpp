@@ -83,30 +83,39 @@ Eigen::MatrixXd ShiftsOfNormals(const ErrorModel& model, const std::vector<int>&
   return shifts;
 }
 
-}  // namespace
+/// What the data tell of the lengths of the joints, in units of their prior, all else being
+/// eliminated.
+struct KnownLengths {
+  std::vector<int> parameters;  ///< of the model
+  Eigen::MatrixXd information;  ///< of the data alone, as the rest
+  Eigen::VectorXd b;            ///< information times the estimate
+  Eigen::VectorXd pattern;      ///< of a robot that is larger by one
+};
 
-std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
-                                               const CalibrationOptions& options) {
+/// Nothing where too few lengths could tell a scale.
+std::optional<KnownLengths> LengthsOf(const CalibrationResult& result) {
   const ErrorModel& model = result.model;
   const std::vector<int>& fitted = result.posterior.parameters;
   const auto count = static_cast<Eigen::Index>(fitted.size());
-  // In units of the prior.
   const Eigen::VectorXd unit = result.prior_sd(fitted);
-  Eigen::VectorXd pattern = Eigen::VectorXd::Zero(count);
+  KnownLengths known;
+  std::vector<double> pattern;
   std::vector<Eigen::Index> lengths, others;
   int told = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Parameter& parameter = model.parameters[fitted[static_cast<std::size_t>(i)]];
+    const Parameter& parameter = model.parameters[Size(fitted[Size(i)])];
     if (parameter.joint < 0 || GroupOf(parameter.kind) != PriorGroup::kLengths) {
       others.push_back(i);
       continue;
     }
     lengths.push_back(i);
-    const double length = NominalLength(model.placements[parameter.joint], parameter.kind);
-    pattern[i] = length / unit[i];
+    known.parameters.push_back(fitted[Size(i)]);
+    const double length = NominalLength(model.placements[Size(parameter.joint)], parameter.kind);
+    pattern.push_back(length / unit[i]);
     told += std::abs(length) > kLeastLength ? 1 : 0;
   }
-  if (told < kFewestLengths || !options.earlier.empty()) return std::nullopt;
+  if (told < kFewestLengths) return std::nullopt;
+  known.pattern = Eigen::Map<const Eigen::VectorXd>(pattern.data(), std::ssize(pattern));
   const Eigen::VectorXd x = result.delta(fitted).cwiseQuotient(unit);
   Eigen::MatrixXd A = unit.asDiagonal() * result.posterior.data_information * unit.asDiagonal();
   const Eigen::VectorXd b = A * x + x;  // of the data alone
@@ -117,45 +126,60 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
   both << across, b(others);
   const Eigen::MatrixXd eliminated =
       across.transpose() * SolvePositive(Eigen::MatrixXd(A(others, others)), both);
-  Eigen::MatrixXd own_information = A(lengths, lengths);
-  own_information.diagonal().array() -= 1.0;
-  own_information -= eliminated.leftCols(across.cols());
-  const Eigen::VectorXd own_b = b(lengths) - eliminated.rightCols<1>();
-  const Eigen::VectorXd own_pattern = pattern(lengths);
-  std::vector<int> parameters;
-  for (const Eigen::Index i : lengths) parameters.push_back(fitted[static_cast<std::size_t>(i)]);
-  const auto own_count = static_cast<Eigen::Index>(lengths.size());
-  const Eigen::MatrixXd own_weight =
-      InverseOfPositive(Eigen::MatrixXd::Identity(own_count, own_count) +
-                        ShiftsOfNormals(model, parameters, result.prior_sd));
-  // The prior was widened with the pattern in it; how wide it has to be beside the pattern. Small
-  // robots and industrial arms are made more exactly than the prior expects, which lengths tell.
-  const double first = 1.0 / result.prior_scale[PriorGroup::kLengths];
+  known.information = A(lengths, lengths);
+  known.information.diagonal().array() -= 1.0;
+  known.information -= eliminated.leftCols(across.cols());
+  known.b = b(lengths) - eliminated.rightCols<1>();
+  return known;
+}
+
+/// The scale beside lengths of a prior as wide as they ask for: the prior was widened with the
+/// pattern in it, and small robots and industrial arms are made more exactly than it expects. A
+/// width of `first` is that of the prior as it was before; `own_weight` is the prior's weight for a
+/// width of one. Nothing where the lengths tell no scale.
+std::optional<CommonScale> ScaleBeside(const KnownLengths& lengths,
+                                       const Eigen::MatrixXd& own_weight, double first) {
+  const Eigen::Index count = lengths.pattern.size();
   double width = first;
   CommonScale scale;
   for (int round = 0; round < kRounds; ++round) {
     const double weight = 1.0 / (width * width);
-    const Eigen::MatrixXd information = own_information + weight * own_weight;
+    const Eigen::MatrixXd information = lengths.information + weight * own_weight;
     const Eigen::MatrixXd covariance = InverseOfPositive(information);
-    const Eigen::VectorXd pull = weight * (own_weight * own_pattern);
-    const double known = pull.dot(own_pattern) - pull.dot(covariance * pull);
+    const Eigen::VectorXd pull = weight * (own_weight * lengths.pattern);
+    const double known = pull.dot(lengths.pattern) - pull.dot(covariance * pull);
     if (!(known > 0.0)) return std::nullopt;
-    scale.size = pull.dot(covariance * own_b) / known;
+    scale.size = pull.dot(covariance * lengths.b) / known;
     scale.sd = 1.0 / std::sqrt(known);
-    const Eigen::VectorXd own = covariance * (own_b + scale.size * pull) - scale.size * own_pattern;
+    const Eigen::VectorXd own =
+        covariance * (lengths.b + scale.size * pull) - scale.size * lengths.pattern;
     const double squares = weight * own.dot(own_weight * own);
     const double determined =
-        static_cast<double>(own_count) - weight * own_weight.cwiseProduct(covariance).sum();
+        static_cast<double>(count) - weight * own_weight.cwiseProduct(covariance).sum();
     scale.degrees_of_freedom = std::max(1.0, determined);
     if (determined < 1.0) break;
-    double narrowest = own_count >= kManyLengths ? kNarrowestPrior * first : first;
-    if (own_count < kManyLengths && determined >= kSomeLengths) {
+    double narrowest = count >= kManyLengths ? kNarrowestPrior * first : first;
+    if (count < kManyLengths && determined >= kSomeLengths) {
       narrowest = kNarrowestOfSome * first;
       scale.degrees_of_freedom -= 1.0;  // the scale's own
     }
     width = std::max(narrowest, width * std::sqrt(squares / determined));
   }
   return scale;
+}
+
+}  // namespace
+
+std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
+                                               const CalibrationOptions& options) {
+  if (!options.earlier.empty()) return std::nullopt;
+  const std::optional<KnownLengths> lengths = LengthsOf(result);
+  if (!lengths) return std::nullopt;
+  const Eigen::Index count = lengths->pattern.size();
+  const Eigen::MatrixXd own_weight =
+      InverseOfPositive(Eigen::MatrixXd::Identity(count, count) +
+                        ShiftsOfNormals(result.model, lengths->parameters, result.prior_sd));
+  return ScaleBeside(*lengths, own_weight, 1.0 / result.prior_scale[PriorGroup::kLengths]);
 }
 
 std::pair<double, double> CompatibleScales(const CommonScale& scale) {

@@ -117,9 +117,12 @@ std::string DescribeSensitivity(const JointCheck& check) {
     const auto seen = [](const JointSuspect* joint) { return joint->smallest_seen; };
     const auto [least, most] = std::ranges::minmax_element(told, {}, seen);
     const double factor = lengths ? 1e3 : 180.0 / M_PI;
-    text += fmt::format("Changes of a zero would be seen from {:.2g} {} on ({}), {:.2g} at {}\n",
-                        factor * (*least)->smallest_seen, lengths ? "mm" : "deg", (*least)->joint,
-                        factor * (*most)->smallest_seen, (*most)->joint);
+    text += fmt::format(
+        "Changes of a zero would be seen from {:.2g} {} on ({}){}\n",
+        factor * (*least)->smallest_seen, lengths ? "mm" : "deg", (*least)->joint,
+        least == most
+            ? ""
+            : fmt::format(", {:.2g} at {}", factor * (*most)->smallest_seen, (*most)->joint));
   }
   if (check.not_told.empty()) return text;
   return text + fmt::format(

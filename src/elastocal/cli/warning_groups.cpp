@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cstddef>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -37,10 +39,34 @@ struct Parsed {
   std::vector<std::string> names;  ///< what stood there, but for numbers
 };
 
+/// The length of the place that a warning begins with ("my table.csv:45", "day 2/left.csv"): up to
+/// a colon and a blank, after the ending of a file and perhaps numbers of lines. 0 without one.
+std::size_t LengthOfPlace(const std::string& warning) {
+  constexpr std::array kEndings = {".csv", ".tsv",  ".trc", ".c3d", ".npz", ".yaml", ".yml",
+                                   ".txt", ".json", ".bag", ".db3", ".xml", ".urdf", ".mcap"};
+  const std::size_t colon = warning.find(": ");
+  if (colon == std::string::npos) return 0;
+  std::string file = warning.substr(0, colon);
+  const std::size_t line = file.find_last_not_of("0123456789:");
+  if (line != std::string::npos && line + 1 < file.size() && file[line + 1] == ':') {
+    file.resize(line + 1);
+  }
+  std::transform(file.begin(), file.end(), file.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const bool is_file = std::any_of(kEndings.begin(), kEndings.end(),
+                                   [&](const char* ending) { return file.ends_with(ending); });
+  return is_file ? colon : 0;
+}
+
 Parsed Parse(const std::string& warning) {
   Parsed parsed;
   std::vector<std::string> pattern;
-  std::istringstream words(warning);
+  const std::size_t place = LengthOfPlace(warning);
+  if (place > 0) {  // one name, whatever blanks are in it
+    parsed.names.push_back(warning.substr(0, place));
+    pattern.emplace_back("*:");
+  }
+  std::istringstream words(warning.substr(place > 0 ? place + 1 : 0));
   std::string before;
   for (std::string word; words >> word;) {
     const std::string core = Core(word);

@@ -205,10 +205,11 @@ std::vector<std::string> UnrecordedBranches(const CalibrationResult& calibration
       }
     }
     if (!changed.contains(k) || !branches || unrecorded.empty()) continue;
-    warnings.push_back(fmt::format(
-        "the correction of {} also moves what {} carries, of which this recording shows "
-        "nothing: it may belong to the recorded branch alone",
-        model.tree.joints[k].name, unrecorded));
+    warnings.push_back(
+        fmt::format("the correction of {} also moves what {} {}, of which this recording shows "
+                    "nothing: it may belong to the recorded branch alone",
+                    model.tree.joints[k].name, unrecorded,
+                    unrecorded.find(',') == std::string::npos ? "carries" : "carry"));
   }
   return warnings;
 }

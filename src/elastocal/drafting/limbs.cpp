@@ -42,6 +42,15 @@ void MarkBeyond(const RobotTree& tree, int body, std::vector<bool>& marked) {
   }
 }
 
+/// Whether a joint beyond a body follows no other one: that of a neck, say, whose upper bend
+/// follows the lower one. Nothing of a finger does, beyond the joint that follows.
+bool MovesByItselfBeyond(const RobotTree& tree, int body) {
+  const std::vector<int> branches = Branches(tree, body);
+  return std::any_of(branches.begin(), branches.end(), [&](int next) {
+    return !tree.joints[Size(next - 1)].mimic || MovesByItselfBeyond(tree, next);
+  });
+}
+
 /// Bodies that belong to a gripper or to fingers.
 std::vector<bool> FindTools(const RobotTree& tree) {
   constexpr double kShort = 0.22;
@@ -53,8 +62,9 @@ std::vector<bool> FindTools(const RobotTree& tree) {
     const std::vector<int> branches = Branches(tree, body);
     if (JointsToBody(tree, body).size() < kLeastJoints || branches.empty()) continue;
     if (Reach(tree, body) > kShort * longest) continue;
-    const bool mimics = std::any_of(branches.begin(), branches.end(),
-                                    [&](int b) { return tree.joints[Size(b - 1)].mimic; });
+    const bool mimics = std::any_of(branches.begin(), branches.end(), [&](int b) {
+      return tree.joints[Size(b - 1)].mimic && !MovesByItselfBeyond(tree, b);
+    });
     const Joint& only = tree.joints[Size(branches[0] - 1)];
     const bool jaw =
         only.type == JointType::kPrismatic && only.limits.upper - only.limits.lower <= kFinger;

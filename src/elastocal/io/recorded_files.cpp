@@ -92,7 +92,7 @@ void TakeWrenches(const JointLog& from, const Project& project,
   throw InputError(log.source + ": the joint " + Quote(name) + " is not known" +
                    DidYouMean(name.substr(0, 60), known) +
                    "; what is not to be read is listed in recording.ignore of " +
-                   project.file.string());
+                   project.file.string() + ", joints with other names in recording.columns.joints");
 }
 
 /// Torques are taken as a whole or not at all; those of joints without a sensor are not used.

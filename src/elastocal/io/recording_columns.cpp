@@ -32,7 +32,8 @@ std::vector<int> FindRecordingColumns(const Table& table, ColumnRoles roles, std
   for (const std::string& column : project.recording.ignore) roles[column] = kPassedOver;
   return FindColumns(
       table, roles, quantities,
-      "columns that are not to be read are listed in recording.ignore of " + project.file.string());
+      "columns that are not to be read are listed in recording.ignore of " + project.file.string() +
+          ", those with other names than joints and markers have in recording.columns");
 }
 
 }  // namespace elastocal

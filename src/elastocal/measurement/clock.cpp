@@ -153,11 +153,13 @@ std::string Describe(const ClockFit& fit) {
       return "the marker file and the joint log have too little in common at any lag";
     case ClockState::kWeak:
       return format(
-          "marker speeds and joint log do not agree at any lag (correlation %.2f at most)",
+          "marker speeds and joint log do not agree at any lag (correlation %.2f at most; is "
+          "the log that of this trial?)",
           fit.peak);
     case ClockState::kAmbiguous:
       return format(
-          "the clock lag is ambiguous: correlation %.4f at %.2f s, but %.4f at another lag",
+          "the clock lag is ambiguous: correlation %.4f at %.2f s, but %.4f at another lag (is the "
+          "log that of this trial, or does the motion repeat itself?)",
           fit.peak, fit.lag_s, fit.second_peak);
     case ClockState::kAtTheRim:
       return format("the clock lag lies at or beyond the end of the searched range, %.2f s",

@@ -48,6 +48,20 @@ TEST_F(MarkerUnits, AMarkerThatIsTooFarIsNamed) {
             std::string::npos);
 }
 
+TEST_F(MarkerUnits, AllInAnotherUnitAreNamed) {
+  positions_ *= 1e-3;  // metres, read as millimetres
+  const auto found = FindOtherUnit(positions_, names_, robot_);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->marker.empty());
+  EXPECT_DOUBLE_EQ(found->factor, 1000.0);
+  EXPECT_EQ(Describe(*found).find("all positions are 1000 times too small: two markers of one link "
+                                  "are 0.06 mm apart, where the project has 60 mm"),
+            0U);
+  // A project whose clusters are drawn half as large is none of it.
+  for (Marker& marker : robot_) marker.p_link_marker *= 0.5;
+  EXPECT_FALSE(FindOtherUnit(1e3 * positions_, names_, robot_));
+}
+
 TEST_F(MarkerUnits, SoundMarkersExchangedOnesAndThoseOfAnotherPlaceAreNot) {
   EXPECT_FALSE(FindOtherUnit(positions_, names_, robot_));
   Eigen::MatrixXd exchanged = positions_;

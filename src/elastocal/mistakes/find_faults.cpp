@@ -201,6 +201,146 @@ std::vector<std::string> TooLoose(const Project& project, const Recording& recor
   return {Describe(*loose)};
 }
 
+/// The steps of FindFaults, the plainest faults first: what one leaves looks like the next.
+class FaultsInTurn {
+ public:
+  FaultsInTurn(const Project& project, std::optional<std::uint64_t> seed,
+               const Measurements& as_recorded, const RecordedModel& robot,
+               const Recording& recording, const ModelComparison& comparison)
+      : project_(project),
+        seed_(seed),
+        as_recorded_(as_recorded),
+        robot_(robot),
+        recording_(recording),
+        comparison_(comparison),
+        gears_(FindImpossibleGears(comparison.largest())),
+        of_slides_(ScaleOfSlides(gears_, comparison.largest(), project.calibration)),
+        // Where the cameras are right, a robot whose lengths are all off is of another size.
+        scale_is_known_(ScaleIsKnown(as_recorded.trials)) {}
+
+  std::vector<std::string> Run() {
+    std::vector<std::string> faults = OfWholeRecording();
+    if (!faults.empty()) return faults;
+    left_ = MarkerError(comparison_.largest(), recording_, project_.calibration);
+    faults = OfUpByLoads();
+    if (!faults.empty()) return faults;
+    if (!of_slides_.empty() && !scale_is_known_) return {of_slides_};
+    faults = OfCoarsePositions();
+    if (!faults.empty()) return faults;
+    Look();
+    if (!gears_.empty()) return OfGears();
+    return found_ ? OfGeneralFault() : OfFewRowsOrMarkers();
+  }
+
+ private:
+  const CalibrationResult& fit() const { return comparison_.largest(); }
+
+  std::optional<GeneralFault> General() const {
+    return FindGeneralFault(project_, seed_, as_recorded_, robot_, recording_, fit());
+  }
+
+  /// The direction of gravity, the scale of the cameras, mistakes, and clusters on other links.
+  std::vector<std::string> OfWholeRecording() const {
+    std::vector<std::string> faults;
+    if (const auto up = FindWrongUp(robot_.model, recording_)) faults.push_back(Describe(*up));
+    const std::string wrong_scales = DescribeWrongScales(as_recorded_.trials);
+    if (!wrong_scales.empty()) faults.push_back(wrong_scales);
+    for (const RecordingMistake& mistake :
+         FindRecordingMistakes(project_, seed_, as_recorded_, recording_, fit())) {
+      faults.push_back(DescribeMistake(mistake));
+    }
+    if (faults.empty()) {
+      const auto carried =
+          FindCarryingLink(robot_.model, recording_, SeenClusters(project_, recording_));
+      if (carried) return {Describe(*carried)};
+    }
+    if (!wrong_scales.empty() || scale_is_known_) return faults;
+    if (const auto scale = FindWrongScale(fit(), project_.calibration)) {
+      // The scale of one trial, or axis, is spread over the lengths that it tells.
+      const auto found = General();
+      const bool of_cameras =
+          found && (found->fault.kind == FaultKind::kCameraScale || IsInCameraSpace(found->fault));
+      faults.push_back(of_cameras           ? ExplainFault(*found, project_).text
+                       : of_slides_.empty() ? Describe(*scale)
+                                            : of_slides_);
+    }
+    return faults;
+  }
+
+  /// Faults of joints and others that move several clusters; looked for once.
+  void Look() {
+    if (few_) return;
+    // Causes take up a part of what a fault of a joint does.
+    found_ =
+        gears_.empty() ? General() : FindWithoutCauses(project_, seed_, as_recorded_, fit().kind);
+    few_ = found_ ? ExplainFault(*found_, project_) : FaultsInWords();
+  }
+
+  /// Faults of joints load them as another direction of gravity might.
+  std::vector<std::string> OfUpByLoads() {
+    const auto up = FindUpByLoads(project_, seed_, as_recorded_, left_);
+    if (!up) return {};
+    Look();
+    if (few_->complete && few_->left <= up->found) return {};
+    return {Describe(*up, recording_)};
+  }
+
+  std::vector<std::string> OfCoarsePositions() const {
+    std::vector<std::string> faults;
+    for (const CoarsePositions& one :
+         FindCoarsePositions(fit(), recording_, project_.calibration, as_recorded_.trials)) {
+      if (IsTooCoarse(one, project_.tree)) faults.push_back(Describe(one, project_.tree));
+    }
+    return faults;
+  }
+
+  std::vector<std::string> OfGears() const {
+    const bool better = few_->complete && few_->left < kLeftBesideGears * left_;
+    if (found_ && (better || IsFarOff(gears_))) return {few_->text};
+    std::vector<std::string> faults;
+    for (const RecordingFault& gear : gears_) {
+      faults.push_back(FaultAndRemedy(gear, project_.tree, recording_));
+    }
+    return faults;
+  }
+
+  std::vector<std::string> OfGeneralFault() const {
+    const std::string of_slide =
+        scale_is_known_ ? "" : ScaleOfSlides({found_->fault}, fit(), project_.calibration);
+    if (!of_slide.empty()) return {of_slide};
+    if (!few_->complete) {
+      const auto odd = OddBesideCalibrated(project_, robot_, recording_, fit(), left_);
+      if (!odd.empty()) return odd;
+      const auto loose = TooLoose(project_, recording_, fit());
+      if (!loose.empty()) return loose;
+    }
+    return {few_->text};
+  }
+
+  std::vector<std::string> OfFewRowsOrMarkers() const {
+    std::vector<std::string> faults =
+        OddBesideCalibrated(project_, robot_, recording_, fit(), left_);
+    if (!faults.empty()) return faults;
+    const auto scattered = FindScatteredPositions(fit(), recording_, project_.calibration);
+    if (!scattered) return TooLoose(project_, recording_, fit());
+    if (!IsTooLoose(*scattered, project_.tree)) return {};
+    return {Describe(*scattered, project_.tree)};
+  }
+
+  const Project& project_;
+  std::optional<std::uint64_t> seed_;
+  const Measurements& as_recorded_;
+  const RecordedModel& robot_;
+  const Recording& recording_;
+  const ModelComparison& comparison_;
+  std::vector<RecordingFault> gears_;
+  std::string of_slides_;
+  bool scale_is_known_;
+  double left_ = 0.0;  ///< error of the markers, m
+  std::optional<GeneralFault> found_;
+  std::optional<FaultsInWords> few_;
+};
+
 }  // namespace
 
 bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
@@ -213,92 +353,7 @@ bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
 std::vector<std::string> FindFaults(const Project& project, std::optional<std::uint64_t> seed,
                                     const Measurements& as_recorded, const RecordedModel& robot,
                                     const Recording& recording, const ModelComparison& comparison) {
-  std::vector<std::string> faults;
-  if (const auto up = FindWrongUp(robot.model, recording)) faults.push_back(Describe(*up));
-  const std::string wrong_scales = DescribeWrongScales(as_recorded.trials);
-  if (!wrong_scales.empty()) faults.push_back(wrong_scales);
-  for (const RecordingMistake& mistake :
-       FindRecordingMistakes(project, seed, as_recorded, recording, comparison.largest())) {
-    faults.push_back(DescribeMistake(mistake));
-  }
-  if (faults.empty()) {
-    const auto carried = FindCarryingLink(robot.model, recording, SeenClusters(project, recording));
-    if (carried) return {Describe(*carried)};
-  }
-  const std::vector<RecordingFault> gears = FindImpossibleGears(comparison.largest());
-  const std::string of_slides = ScaleOfSlides(gears, comparison.largest(), project.calibration);
-  // Where the cameras are right, a robot whose lengths are all off is of another size.
-  const bool scale_is_known = ScaleIsKnown(as_recorded.trials);
-  const auto general = [&] {
-    return FindGeneralFault(project, seed, as_recorded, robot, recording, comparison.largest());
-  };
-  if (wrong_scales.empty() && !scale_is_known) {
-    if (const auto scale = FindWrongScale(comparison.largest(), project.calibration)) {
-      // The scale of one trial, or axis, is spread over the lengths that it tells.
-      const auto found = general();
-      const bool of_cameras =
-          found && (found->fault.kind == FaultKind::kCameraScale || IsInCameraSpace(found->fault));
-      faults.push_back(of_cameras          ? ExplainFault(*found, project).text
-                       : of_slides.empty() ? Describe(*scale)
-                                           : of_slides);
-    }
-  }
-  // What a mistake leaves would look like other faults.
-  if (!faults.empty()) return faults;
-  const double left = MarkerError(comparison.largest(), recording, project.calibration);
-  // Faults of joints load them as another direction of gravity might, and causes take up a part.
-  std::optional<GeneralFault> found;
-  std::optional<FaultsInWords> few;
-  const auto look = [&] {
-    if (few) return;
-    found = gears.empty()
-                ? general()
-                : FindWithoutCauses(project, seed, as_recorded, comparison.largest().kind);
-    few = found ? ExplainFault(*found, project) : FaultsInWords();
-  };
-  if (const auto up = FindUpByLoads(project, seed, as_recorded, left)) {
-    look();
-    if (!few->complete || few->left > up->found) return {Describe(*up, recording)};
-  }
-  if (!of_slides.empty() && !scale_is_known) return {of_slides};
-  for (const CoarsePositions& one : FindCoarsePositions(comparison.largest(), recording,
-                                                        project.calibration, as_recorded.trials)) {
-    if (IsTooCoarse(one, project.tree)) faults.push_back(Describe(one, project.tree));
-  }
-  if (!faults.empty()) return faults;
-  look();
-  if (!gears.empty()) {
-    const bool better = few->complete && few->left < kLeftBesideGears * left;
-    if (found && (better || IsFarOff(gears))) return {few->text};
-    for (const RecordingFault& gear : gears) {
-      faults.push_back(FaultAndRemedy(gear, project.tree, recording));
-    }
-    return faults;
-  }
-  if (!found) {
-    faults = OddBesideCalibrated(project, robot, recording, comparison.largest(), left);
-    if (!faults.empty()) return faults;
-    const auto scattered =
-        FindScatteredPositions(comparison.largest(), recording, project.calibration);
-    if (scattered) {
-      if (IsTooLoose(*scattered, project.tree)) {
-        faults.push_back(Describe(*scattered, project.tree));
-      }
-      return faults;
-    }
-    return TooLoose(project, recording, comparison.largest());
-  }
-  const std::string of_slide =
-      scale_is_known ? ""
-                     : ScaleOfSlides({found->fault}, comparison.largest(), project.calibration);
-  if (!of_slide.empty()) return {of_slide};
-  if (!few->complete) {
-    const auto odd = OddBesideCalibrated(project, robot, recording, comparison.largest(), left);
-    if (!odd.empty()) return odd;
-    const auto loose = TooLoose(project, recording, comparison.largest());
-    if (!loose.empty()) return loose;
-  }
-  return {few->text};
+  return FaultsInTurn(project, seed, as_recorded, robot, recording, comparison).Run();
 }
 
 }  // namespace elastocal

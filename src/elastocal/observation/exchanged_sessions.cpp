@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -18,6 +20,10 @@ constexpr double kUnexplained = 9.0;      // squares of a number that the own se
 constexpr double kMuchBetter = 0.25;      // of them, that another session leaves
 constexpr double kNoiseLeftOver = 0.5;    // of heights, of tilts or of what else is measured
 constexpr double kMostShare = 1.0 / 3.0;  // of the postures
+// Of two sessions whose postures are mixed: as many as half of them. Noise that is cut in two
+// leaves 0.6 of itself (0.36 of its squares), so less than a half of that is asked for.
+constexpr double kMostOfMixed = 0.5, kNoiseLeftOfMixed = 0.3, kCutInTwo = 0.15;
+constexpr std::size_t kFewestToCut = 8;
 constexpr int kMostSessionRounds = 12;
 
 /// By posture the name of its session; empty where nothing in it depends on one.
@@ -58,6 +64,33 @@ Labels LabelsOf(const Observations& observations) {
   return labels;
 }
 
+/// Numbers cut in two at the place that leaves least squares about the means of the parts.
+struct Cut {
+  double at = 0.0;     ///< the largest number of the lower part
+  double share = 1.0;  ///< of the squares about the mean of all, that is left
+};
+
+Cut CutInTwo(std::vector<double> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  const auto count = static_cast<double>(numbers.size());
+  double sum = 0.0, squares = 0.0;
+  for (const double of : numbers) {
+    sum += of;
+    squares += of * of;
+  }
+  const double all = squares - sum * sum / count;
+  Cut best;
+  if (!(all > 0.0)) return best;
+  double below = 0.0;
+  for (std::size_t n = 1; n < numbers.size(); ++n) {
+    below += numbers[n - 1];
+    const double first = static_cast<double>(n), above = sum - below;
+    const double left = squares - below * below / first - above * above / (count - first);
+    if (left / all < best.share) best = {numbers[n - 1], left / all};
+  }
+  return best;
+}
+
 class SessionSearch {
  public:
   SessionSearch(const ObservedRobot& model, const Observations& observations)
@@ -71,12 +104,15 @@ class SessionSearch {
     const ObservationFit all = FitObservations(model_, observations_, start, {});
     spread_ = all.spread;
     before_ = NoiseBySource(observations_, all.values);
-    Try(all.values);
+    Try(said_, all.values, kMostShare, kNoiseLeftOver);
     if (best_.empty()) {
-      Try(FitObservations(model_, observations_, start,
+      Try(said_,
+          FitObservations(model_, observations_, start,
                           {.freedom = {.robot = false}, .robust = true})
-              .values);
+              .values,
+          kMostShare, kNoiseLeftOver);
     }
+    if (best_.empty()) TryMixed(all.values);
     return best_;
   }
 
@@ -135,10 +171,78 @@ class SessionSearch {
     return nearest;
   }
 
-  void Try(ObservedValues at) {
-    Labels labels = said_;
+  /// Each two sessions as if their postures were mixed: what lies in two heaps, whatever the
+  /// postures say, is of one session and of the other.
+  void TryMixed(const ObservedValues& at) {
+    for (auto a = names_.begin(); a != names_.end(); ++a) {
+      for (auto b = std::next(a); b != names_.end(); ++b) {
+        const Labels labels = InTwoHeaps(*a, *b, at);
+        if (labels == said_ || !best_.empty()) continue;
+        const Observations changed = WithLabels(labels, observations_);
+        Try(labels, FitObservations(model_, changed, StartFit(model_, changed), {}).values,
+            kMostOfMixed, kNoiseLeftOfMixed);
+      }
+    }
+  }
+
+  /// By instrument, the two heaps as like the labels as may be; as said where there are none.
+  Labels InTwoHeaps(const std::string& a, const std::string& b, const ObservedValues& at) const {
+    Labels labels = said_, as_of_a = said_;
+    std::replace(as_of_a.begin(), as_of_a.end(), b, a);
+    const std::vector<Eigen::VectorXd> left =
+        LeftOf(model_, WithLabels(as_of_a, observations_), at);
+    std::map<int, std::vector<int>> by_instrument;
+    for (int i = 0; i < observations_.count(); ++i) {
+      const Observation& of = observations_.all[Size(i)];
+      const std::string& said = said_[Size(of.posture)];
+      if (!of.effects.empty() && (said == a || said == b))
+        by_instrument[of.instrument].push_back(i);
+    }
+    for (const auto& [instrument, all] : by_instrument) {
+      if (all.size() < kFewestToCut) continue;
+      Cut best{0.0, kCutInTwo};
+      int best_row = -1;
+      for (int row = 0; row < model_.instrument(instrument).size(); ++row) {
+        std::vector<double> numbers;
+        for (const int i : all) numbers.push_back(left[Size(i)][row]);
+        const Cut cut = CutInTwo(numbers);
+        if (!(cut.share < best.share)) continue;
+        best = cut;
+        best_row = row;
+      }
+      if (best_row >= 0) Label(all, left, best_row, best.at, {a, b}, labels);
+    }
+    return labels;
+  }
+
+  /// Where the heaps are as large as the sessions: rows that were exchanged are still as many, and
+  /// touches in the air are not.
+  void Label(const std::vector<int>& all, const std::vector<Eigen::VectorXd>& left, int row,
+             double at, const std::pair<std::string, std::string>& names, Labels& labels) const {
+    constexpr double kAsMany = 0.15;  // of all
+    const auto below = [&](int i) { return left[Size(i)][row] <= at; };
+    const auto of_first = [&](int i) {
+      return said_[Size(observations_.all[Size(i)].posture)] == names.first;
+    };
+    const auto agree =
+        std::count_if(all.begin(), all.end(), [&](int i) { return below(i) == of_first(i); });
+    const bool first_is_below = 2 * agree >= std::ssize(all);
+    const auto before = std::count_if(all.begin(), all.end(), of_first);
+    const auto after =
+        std::count_if(all.begin(), all.end(), [&](int i) { return below(i) == first_is_below; });
+    const auto change = static_cast<double>(std::abs(after - before));
+    if (change > kAsMany * static_cast<double>(all.size())) return;
+    for (const int i : all) {
+      labels[Size(observations_.all[Size(i)].posture)] =
+          below(i) == first_is_below ? names.first : names.second;
+    }
+  }
+
+  /// From these labels on; taken if at most this share of the postures has another one than it
+  /// says, and less than this share of the noise is left.
+  void Try(Labels labels, ObservedValues at, double most_share, double noise_left) {
     std::set<Labels> seen;
-    double noise = Noise(SquaresBy(observations_, at));
+    double noise = Noise(SquaresBy(WithLabels(labels, observations_), at));
     for (int round = 0; round < kMostSessionRounds && seen.insert(labels).second; ++round) {
       InterruptionPoint();
       Labels next = Nearest(labels, at, noise);
@@ -148,7 +252,11 @@ class SessionSearch {
       at = FitObservations(model_, changed, StartFit(model_, changed), {}).values;
       noise = Noise(SquaresBy(changed, at));
     }
-    Judge(labels, NoiseBySource(WithLabels(labels, observations_), at));
+    const auto after = NoiseBySource(WithLabels(labels, observations_), at);
+    const bool less = std::any_of(after.begin(), after.end(), [&](const auto& of) {
+      return of.second <= noise_left * before_.at(of.first);
+    });
+    if (less) Take(labels, most_share);
   }
 
   /// Squares of a number where most postures are of the session that they say.
@@ -160,18 +268,14 @@ class SessionSearch {
     return some.empty() ? 1.0 : Median(some);
   }
 
-  void Judge(const Labels& labels, const std::map<int, double>& after) {
+  void Take(const Labels& labels, double most_share) {
     std::vector<OtherSession> others;
     int count = 0;
     for (std::size_t p = 0; p < labels.size(); ++p) {
       if (!said_[p].empty()) ++count;
       if (labels[p] != said_[p]) others.push_back({static_cast<int>(p), said_[p], labels[p]});
     }
-    if (static_cast<double>(others.size()) > kMostShare * count) return;
-    const bool halved = std::any_of(after.begin(), after.end(), [&](const auto& of) {
-      return of.second <= kNoiseLeftOver * before_.at(of.first);
-    });
-    if (halved) best_ = std::move(others);
+    if (static_cast<double>(others.size()) <= most_share * count) best_ = std::move(others);
   }
 
   const ObservedRobot& model_;

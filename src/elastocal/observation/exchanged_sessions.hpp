@@ -20,6 +20,10 @@ struct OtherSession {
 /// and the robot is estimated anew, until nothing changes. Sessions are exchanged where no more
 /// than a third of the postures have another one then, and less than half of the noise of heights,
 /// or of what else is measured, is left.
+///
+/// Where so many are exchanged that a session says nothing, what an instrument shows in two
+/// sessions lies in two heaps: half of the postures may have another session then, which may as
+/// well be the other half, and three tenths of the noise may be left.
 std::vector<OtherSession> FindExchangedSessions(const ObservedRobot& model,
                                                 const Observations& observations);
 

@@ -137,6 +137,7 @@ struct Work {
   Measurements as_recorded;  ///< before
   RecordedModel robot;
   CalibrationRun run;
+  bool sound = true;  ///< nothing is plainly wrong with the recording
 
   const CalibrationOptions& settings() const { return project.calibration; }
   const Recording& recording() const { return measured.calibration; }
@@ -265,6 +266,8 @@ void JudgeRun(Work& work) {
     JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.deployment.urdf_kind,
                  run.verdict);
   }
+  // What a table that is plainly wrong does to a fit is no other fault.
+  if (!work.sound) run.verdict.objections.clear();
   run.verdict.objections.insert(run.verdict.objections.begin(), run.faults.begin(),
                                 run.faults.end());
   run.coverage = FindCoverage(work.project, work.measured);
@@ -281,85 +284,101 @@ void JudgeRun(Work& work) {
   if (!run.extra.empty()) run.warnings.push_back(NotApplied(run.extra, false));
 }
 
+/// Section 5.1, the measurements y^. Markers and the robot's log pass the same low-pass filter, get
+/// one clock, and are reduced to the samples at which the markers are stable: for every marker of a
+/// posture the same ones, so that none weighs more. The trials of all chains are joined.
+///
+/// Not in the paper: what is plainly wrong is named, and nothing is chosen or judged by it.
+void ReadWhatWasMeasured(const std::vector<std::filesystem::path>& recordings, Work& work) {
+  work.project.measurement.accepted = work.options.accept;
+  work.measured = ReadMeasurements(work.project, recordings);
+  work.run.undone = AcceptMistakes(work.project, work.options.accept, work.measured);
+  work.run.faults = FindPlainMistakes(work.project, work.recording());
+  work.sound = work.run.faults.empty();
+}
+
+/// Section 2, the model y(delta). Markers seen from the waist (eq. 2 and 3), on joints and legs
+/// that give way under their loads (eq. 5 and 6): delta is eq. 7. A QR decomposition of the
+/// regressor (eq. 4) over random postures tells which of it can be identified (section 2.1).
+void MakeModel(Work& work) {
+  work.as_recorded = work.measured;
+  work.robot = MakeRecordedModel(work.project, work.options.seed, work.measured);
+  CheckGauge(work.settings().gauge, work.robot.model, work.robot.base);
+  const std::string still = StillJoints(work.robot.model, work.recording());
+  if (!still.empty()) work.run.warnings.push_back(still);
+}
+
+/// Section 5, eq. 14. One least-squares problem over all samples: find the delta that minimises
+/// |y^ - y(delta)|^2 while the pose F(q_i, delta) of the supporting foot stays what it was. Each
+/// residual is weighed by its standard deviation, which follows from the residuals, and a prior
+/// around the nominal robot takes the place of parameters held by hand.
+///
+/// Section 6.1.4. Simpler models (not calibrated, geometric) on the same data.
+void Estimate(Work& work) {
+  const RecordedModel& robot = work.robot;
+  CalibrationResult calibrated = Calibrate(robot.model, work.recording(), robot.base,
+                                           ModelKinds(robot.model).back(), work.settings());
+  work.run.comparison =
+      CompareModels(std::move(calibrated), robot.model, work.recording(), robot.base,
+                    work.settings(), OfStep(work.options.progress, "fit"));
+}
+
+/// The robot description with delta in it.
+void MakeUrdf(Work& work) {
+  CalibrationRun& run = work.run;
+  run.zero_offsets = work.options.zero_offsets;
+  if (!run.deployable()) return;
+  run.urdf = MakeCalibratedUrdf(ReadFile(work.project.urdf), work.project.urdf.string(),
+                                run.comparison.results[static_cast<int>(run.deployment.urdf_kind)],
+                                run.zero_offsets);
+  Append(run.urdf->warnings, run.warnings);
+}
+
+CalibrationRun Finished(Work work) {
+  CalibrationRun& run = work.run;
+  run.recording = std::move(work.measured.calibration);
+  run.validation = std::move(work.measured.validation);
+  run.trials = std::move(work.measured.trials);
+  run.base = std::move(work.robot.base);
+  run.knocks = std::move(work.robot.knocks);
+  return std::move(run);
+}
+
 }  // namespace
 
 CalibrationRun CalibrateExperiment(const Project& given,
                                    const std::vector<std::filesystem::path>& recordings,
                                    const ExperimentOptions& options) {
   Work work{given, options, given, {}, {}, {}, {}};
-  Project& project = work.project;
   CalibrationRun& run = work.run;
 
-  // Section 5.1, the measurements y^. Markers and the robot's log pass the same low-pass filter,
-  // get one clock, and are reduced to the samples at which the markers are stable: for every marker
-  // of a posture the same ones, so that none weighs more. The trials of all chains are joined.
-  project.measurement.accepted = options.accept;
-  work.measured = ReadMeasurements(project, recordings);
-  run.undone = AcceptMistakes(project, options.accept, work.measured);
-
-  // Not in the paper: what is plainly wrong is named, and nothing is chosen or judged by it.
-  run.faults = FindPlainMistakes(project, work.recording());
-  const bool sound = run.faults.empty();
+  ReadWhatWasMeasured(recordings, work);
   ChooseWhatIsEstimated(work);
-
-  // Section 2, the model y(delta). Markers seen from the waist (eq. 2 and 3), on joints and legs
-  // that give way under their loads (eq. 5 and 6): delta is eq. 7. A QR decomposition of the
-  // regressor (eq. 4) over random postures tells which of it can be identified (section 2.1).
-  work.as_recorded = work.measured;
-  work.robot = MakeRecordedModel(project, options.seed, work.measured);
-  const RecordedModel& robot = work.robot;
-  const CalibrationOptions& settings = work.settings();
-  CheckGauge(settings.gauge, robot.model, robot.base);
-  const std::string still = StillJoints(robot.model, work.recording());
-  if (!still.empty()) run.warnings.push_back(still);
-
-  // Section 5, eq. 14. One least-squares problem over all samples: find the delta that minimises
-  // |y^ - y(delta)|^2 while the pose F(q_i, delta) of the supporting foot stays what it was. Each
-  // residual is weighed by its standard deviation, which follows from the residuals, and a prior
-  // around the nominal robot takes the place of parameters held by hand.
-  CalibrationResult calibrated = Calibrate(robot.model, work.recording(), robot.base,
-                                           ModelKinds(robot.model).back(), settings);
-
-  // Section 6.1.4. Simpler models (not calibrated, geometric) on the same data.
-  run.comparison = CompareModels(std::move(calibrated), robot.model, work.recording(), robot.base,
-                                 settings, OfStep(options.progress, "fit"));
+  MakeModel(work);
+  Estimate(work);
 
   // Not in the paper: what is wrong with the recording, by what the fit leaves.
-  if (sound) {
-    run.faults = FindFaults(project, options.seed, work.as_recorded, robot, work.recording(),
-                            run.comparison);
+  if (work.sound) {
+    run.faults = FindFaults(work.project, options.seed, work.as_recorded, work.robot,
+                            work.recording(), run.comparison);
   }
   WarnOfWhatWasRecorded(work);
 
   // Eq. 12: how well the recorded postures tell the parameters apart.
-  run.excitation =
-      ExcitationOf(run.comparison.largest(), robot.base, work.recording(), settings.earlier);
+  run.excitation = ExcitationOf(run.comparison.largest(), work.robot.base, work.recording(),
+                                work.settings().earlier);
 
   // Section 6.1.4, Table 2: errors on postures and on motions that took no part in the estimate.
-  const int folds = sound ? options.folds.value_or(UsualFolds(work.recording())) : 0;
+  const int folds = work.sound ? options.folds.value_or(UsualFolds(work.recording())) : 0;
   if (folds > 0) CrossValidateRun(folds, work);
   JudgeOnOtherTrials(work);
   JudgeRun(work);
 
   // Not in the paper: no measurement tells where the waist's frame is on the robot.
-  GiveGauge(settings, run.comparison);
-  run.waist_error = WaistErrors(run.comparison, work.measured, settings);
-
-  // The robot description with delta in it.
-  run.zero_offsets = options.zero_offsets;
-  if (run.deployable()) {
-    run.urdf = MakeCalibratedUrdf(
-        ReadFile(project.urdf), project.urdf.string(),
-        run.comparison.results[static_cast<int>(run.deployment.urdf_kind)], options.zero_offsets);
-    Append(run.urdf->warnings, run.warnings);
-  }
-
-  run.recording = std::move(work.measured.calibration);
-  run.validation = std::move(work.measured.validation);
-  run.trials = std::move(work.measured.trials);
-  run.base = std::move(work.robot.base);
-  run.knocks = std::move(work.robot.knocks);
-  return std::move(work.run);
+  GiveGauge(work.settings(), run.comparison);
+  run.waist_error = WaistErrors(run.comparison, work.measured, work.settings());
+  MakeUrdf(work);
+  return Finished(std::move(work));
 }
 
 std::string RunStatus(const CalibrationRun& run) {

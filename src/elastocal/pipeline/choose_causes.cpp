@@ -230,7 +230,8 @@ std::string CompensationInWords(bool springs, const std::vector<std::string>& ca
 std::string DescribeForbiddenSprings(const std::vector<std::string>& causes) {
   return Listed(causes) +
          ": joints that give way would predict postures that were left out better, but elasticity "
-         "in the project holds them rigid: without that key, springs are estimated where they help";
+         "in the project holds joints rigid: without that key, springs are estimated where they "
+         "help";
 }
 
 std::string NotApplied(const std::vector<std::string>& causes, bool at_run_time) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/pipeline/choose_model.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace elastocal {
 namespace {
@@ -16,27 +19,32 @@ bool IsPlainlyLess(const Eigen::VectorXd& before, const Eigen::VectorXd& after) 
   return gains.mean() > 2.0 * sd;
 }
 
+/// Whether the project says which joints are elastic, and leaves out some.
+bool HoldsJointsRigid(const ElasticityChoice& own) {
+  if (!own.torsion && !own.bending) return false;
+  const std::vector<std::string> torsion = own.torsion.value_or(std::vector<std::string>());
+  return std::find(torsion.begin(), torsion.end(), "*") == torsion.end();
+}
+
 /// See ModelChoice: of a project as it was decided.
 bool MissesSprings(const Measurements& measured, std::optional<std::uint64_t> seed, int folds,
                    int threads, Project project) {
   ElasticityChoice& own = project.elasticity;
-  const bool open = !own.torsion && !own.bending;
-  const std::vector<std::string> none;
-  if (open || own.extra.empty() || !own.torsion.value_or(none).empty() ||
-      !own.bending.value_or(none).empty()) {
+  if (own.extra.empty() || !HoldsJointsRigid(own) || !measured.calibration.trials.empty() ||
+      !HasMasses(project.tree)) {
     return false;
   }
-  const auto tried = [&] {  // rigid, then with torsion
-    own.torsion.reset();
-    own.bending.reset();
-    return ChooseElasticity(measured.calibration, seed, folds, threads, project);
+  const auto tried = [&] {
+    return TryElasticity(measured.calibration, seed, folds, threads, project);
   };
-  const std::vector<ElasticityTrial> beside = tried();
-  if (beside.empty()) return false;
-  if (IsPlainlyLess(beside[0].errors, beside[1].errors)) return true;
+  const std::optional<ElasticityTrial> decided = tried();
+  if (!decided) return false;
+  own.torsion = {"*"};
+  const std::optional<ElasticityTrial> beside = tried();
+  if (beside && IsPlainlyLess(decided->errors, beside->errors)) return true;
   own.extra.clear();
-  const std::vector<ElasticityTrial> instead = tried();
-  return !instead.empty() && IsPlainlyLess(beside[0].errors, instead[1].errors);
+  const std::optional<ElasticityTrial> instead = tried();
+  return instead && IsPlainlyLess(decided->errors, instead->errors);
 }
 
 }  // namespace

@@ -14,8 +14,9 @@ namespace elastocal {
 struct ModelChoice {
   std::vector<ElasticityTrial> elasticity;  ///< see ChooseElasticity
   std::optional<CauseReport> causes;        ///< see ChooseCauses
-  /// The project holds joints rigid, and springs, beside the causes that were taken or in their
-  /// place, would plainly lower the error of left-out postures: the causes may stand for them.
+  /// The project holds joints rigid, all or some, and springs of all, beside the causes that were
+  /// taken or in their place, would plainly lower the error of left-out postures: the causes may
+  /// stand for them.
   bool misses_springs = false;
 };
 

@@ -16,6 +16,7 @@
 #include "elastocal/mistakes/observed_corrections.hpp"
 #include "elastocal/mistakes/observed_faults.hpp"
 #include "elastocal/mistakes/observed_mistakes.hpp"
+#include "elastocal/observation/exchanged_sessions.hpp"
 #include "elastocal/observation/observation_faults.hpp"
 #include "elastocal/observation/observation_residuals.hpp"
 #include "elastocal/optim/normal_equations.hpp"
@@ -157,6 +158,10 @@ class AlternativeSearch {
       if (without.posture_count() >= kFewestChecked && Holds(without)) {
         found.push_back(DescribeTouchesInTheAir(calibrated_, all, air));
       }
+    }
+    const std::vector<OtherSession> exchanged = FindExchangedSessions(calibrated_, all);
+    if (!exchanged.empty() && Holds(InOtherSessions(exchanged, all))) {
+      found.push_back(DescribeOtherSessions(exchanged, all));
     }
     for (const ObservationFault& fault : faults) {
       // Beside errors as small as a moved joint's, some split of the rows explains them by chance;

@@ -187,10 +187,11 @@ void WarnOfForbiddenSprings(const Project& project, const ContactRunOptions& opt
                             ContactRun& run) {
   const Elasticity& own = run.model.robot.elasticity;
   const bool chosen = run.causes.has_value() && !run.extra.empty();
-  if (!chosen || folds == 0 || !own.torsion.empty() || !own.bending.empty()) return;
+  if (!chosen || folds == 0) return;
   const ObservedRobot rigid = WithCorrections(run.model, project.placement, run.observations, {});
   const auto elastic = WithTorsion(rigid, run.observations, project);
   if (!elastic || IsElasticityOpen(project)) return;
+  if (elastic->robot.elasticity.torsion.size() <= own.torsion.size()) return;  // none is rigid
   const ContactOutcome outcome = Estimate(*elastic, run.observations, true, options, folds);
   if (GainInSds(*elastic, run.observations, run.calibrated.held_out.left, outcome.held_out.left,
                 outcome.estimate.fit.spread) > kElasticGain) {

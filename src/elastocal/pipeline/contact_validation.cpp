@@ -9,14 +9,17 @@
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/contact_file.hpp"
 #include "elastocal/io/observation_table.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/mistakes/observed_corrections.hpp"
 #include "elastocal/mistakes/observed_mistakes.hpp"
+#include "elastocal/observation/exchanged_sessions.hpp"
 #include "elastocal/observation/standing_robot.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/contact_earlier.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
+#include "elastocal/pipeline/leave_out_touches.hpp"
 #include "elastocal/pipeline/off_alone.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -74,6 +77,24 @@ void CompareWithCalibration(const Spread& spread, const PredictObservations& pre
   }
 }
 
+/// Rows of another session than they say, for a robot as it was calibrated, where it errs by more
+/// than it should.
+void NameExchangedSessions(const std::filesystem::path& calibration, const Project& project,
+                           ContactValidation& run) {
+  if (run.observations.effects.empty()) return;
+  ObservedRobot known = run.model;
+  try {
+    known.earlier =
+        MakeEarlierOfContacts(ReadEarlierContacts(calibration, project), known, project, 1.0);
+  } catch (const InputError&) {  // without its covariance: this is for information
+    return;
+  }
+  const std::vector<OtherSession> found = FindExchangedSessions(known, run.observations);
+  if (found.empty()) return;
+  auto& said = run.objections.empty() ? run.warnings : run.objections;
+  said.insert(said.begin(), DescribeOtherSessions(found, run.observations));
+}
+
 /// Mistakes in the tables that explain the objections.
 void NameMistakesOf(ContactValidation& run) {
   if (run.objections.empty()) return;
@@ -126,11 +147,15 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
       run.objections.push_back("no calibrated robot errs like this: " + row);
     }
   }
+  const std::size_t before_comparison = run.warnings.size();
   CompareWithCalibration(contacts.calibrated.spread, predict, run);
   if (!(run.gain_in_sds > 0.0)) {
     run.objections.emplace_back("calibrated is no better than uncalibrated here");
   }
   NameMistakesOf(run);
+  if (!run.objections.empty() || run.warnings.size() > before_comparison) {
+    NameExchangedSessions(calibration, project, run);
+  }
   return run;
 }
 

@@ -8,6 +8,8 @@
 #include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/recorded/measurements.hpp"
 #include "elastocal/tables/read_file.hpp"
+#include "tests/bag_writers.hpp"
+#include "tests/c3d_writer.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/recording_writers.hpp"
 #include "tests/scratch_folder.hpp"

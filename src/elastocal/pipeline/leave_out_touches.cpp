@@ -89,25 +89,31 @@ bool LeaveOutTouchesInTheAir(ContactRun& run) {
   return true;
 }
 
-bool ExchangeSessions(ContactRun& run) {
-  const std::vector<OtherSession> found = FindExchangedSessions(run.model, run.observations);
-  if (found.empty()) return false;
+std::string DescribeOtherSessions(const std::vector<OtherSession>& found,
+                                  const Observations& observations) {
   std::map<std::pair<std::string, std::string>, std::vector<int>> places;  // by said, seen
   for (const OtherSession& of : found) {
     const auto first =
-        std::find_if(run.observations.all.begin(), run.observations.all.end(),
+        std::find_if(observations.all.begin(), observations.all.end(),
                      [&](const Observation& one) { return one.posture == of.posture; });
-    places[{of.said, of.seen}].push_back(static_cast<int>(first - run.observations.all.begin()));
+    places[{of.said, of.seen}].push_back(static_cast<int>(first - observations.all.begin()));
   }
   std::vector<std::string> texts;
   for (const auto& [sessions, rows] : places) {
-    texts.push_back(fmt::format("{} of '{}' as if of '{}'", PlacesOf(rows, run.observations),
+    texts.push_back(fmt::format("{} of '{}' as if of '{}'", PlacesOf(rows, observations),
                                 sessions.first, sessions.second));
   }
-  run.wrong_rows = fmt::format(
+  return fmt::format(
       "{} of {} rows seem to be of another session (contact.sessions, or the file) than they say: "
-      "{}; so the robot leaves less than half as much (or was there no contact?)",
-      found.size(), run.observations.posture_count(), fmt::join(texts, "; "));
+      "{}",
+      found.size(), observations.posture_count(), fmt::join(texts, "; "));
+}
+
+bool ExchangeSessions(ContactRun& run) {
+  const std::vector<OtherSession> found = FindExchangedSessions(run.model, run.observations);
+  if (found.empty()) return false;
+  run.wrong_rows = DescribeOtherSessions(found, run.observations) +
+                   "; so the robot leaves less than half as much (or was there no contact?)";
   run.observations = InOtherSessions(found, run.observations);
   return true;
 }

@@ -20,6 +20,10 @@ std::string DescribeTouchesInTheAir(const ObservedRobot& model, const Observatio
 /// outliers, `wrong_rows` is the objection: too few are left to tell which are right.
 bool LeaveOutTouchesInTheAir(ContactRun& run);
 
+/// "3 of 40 rows seem to be of another session (contact.sessions, or the file) than they say: ...".
+std::string DescribeOtherSessions(const std::vector<OtherSession>& found,
+                                  const Observations& observations);
+
 /// Takes rows with the session of others (FindExchangedSessions) as of those; `wrong_rows` is the
 /// objection that names them. Whether there were some.
 bool ExchangeSessions(ContactRun& run);

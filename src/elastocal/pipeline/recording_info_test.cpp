@@ -8,6 +8,7 @@
 
 #include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/tables/read_file.hpp"
+#include "tests/bag_writers.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/recording_writers.hpp"
 #include "tests/scratch_folder.hpp"

@@ -6,8 +6,8 @@
 #include "elastocal/readers/recording_file.hpp"
 #include "elastocal/readers/ros_messages.hpp"
 #include "elastocal/tables/read_file.hpp"
+#include "tests/bag_writers.hpp"
 #include "tests/expect_input_error.hpp"
-#include "tests/recording_writers.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 

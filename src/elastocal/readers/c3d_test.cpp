@@ -7,8 +7,8 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/readers/c3d_parameters.hpp"
 #include "elastocal/readers/recording_file.hpp"
+#include "tests/c3d_writer.hpp"
 #include "tests/expect_input_error.hpp"
-#include "tests/recording_writers.hpp"
 
 namespace elastocal {
 namespace {

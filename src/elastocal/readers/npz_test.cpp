@@ -5,8 +5,8 @@
 
 #include "elastocal/readers/recording_file.hpp"
 #include "elastocal/tables/read_file.hpp"
+#include "tests/bag_writers.hpp"
 #include "tests/expect_input_error.hpp"
-#include "tests/recording_writers.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {

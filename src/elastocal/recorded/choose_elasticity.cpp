@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
@@ -48,6 +49,31 @@ bool HasMasses(const RobotTree& tree) {
                      [](const Link& link) { return link.body > 0 && link.mass > 0.0; });
 }
 
+std::optional<ElasticityTrial> TryElasticity(const Recording& recording,
+                                             std::optional<std::uint64_t> seed, int most_folds,
+                                             int threads, const Project& project) {
+  const Recording sample = Sample(recording);
+  const ErrorModel model = SelectMarkers(MakeProjectModel(project, {}), sample.marker_names);
+  IdentifiabilityOptions identifiability = project.identifiability;
+  if (seed) identifiability.seed = *seed;
+  if (HasFreeRoot(sample)) identifiability.root = RootPose::kFree;
+  const BaseParameters base = FindBaseParameters(model, identifiability);
+  const ModelKind kind = ModelKinds(model).back();
+  ElasticityTrial trial;
+  try {
+    const CrossValidation folds =
+        CrossValidate(std::vector<ModelKind>{kind}, model, sample, base, project.calibration,
+                      {.folds = FoldsFor(sample, most_folds),
+                       .threads = threads,
+                       .by = FootingBy::kAllOfPosture});
+    trial.rmse_3d = folds.metrics[static_cast<int>(kind)].rmse_3d;
+    trial.errors = ErrorsByPosture(folds.distances[static_cast<int>(kind)]);
+  } catch (const InputError&) {  // the estimate will say so
+    return std::nullopt;
+  }
+  return trial;
+}
+
 std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
                                               std::optional<std::uint64_t> seed, int most_folds,
                                               int threads, Project& project) {
@@ -56,7 +82,6 @@ std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
       recording.posture_count() < kLeastPostures) {
     return {};
   }
-  const Recording sample = Sample(recording);
   using Patterns = std::vector<std::string>;
   const Patterns all = {"*"};
   const struct {
@@ -69,36 +94,23 @@ std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
   for (const auto& candidate : candidates) {
     project.elasticity.torsion = candidate.torsion;
     project.elasticity.bending = candidate.bending;
-    const ErrorModel model = SelectMarkers(MakeProjectModel(project, {}), sample.marker_names);
-    IdentifiabilityOptions identifiability = project.identifiability;
-    if (seed) identifiability.seed = *seed;
-    if (HasFreeRoot(sample)) identifiability.root = RootPose::kFree;
-    const BaseParameters base = FindBaseParameters(model, identifiability);
-    const ModelKind kind = ModelKinds(model).back();
-    ElasticityTrial trial;
-    trial.kinds = candidate.kinds;
-    try {
-      const CrossValidation folds =
-          CrossValidate(std::vector<ModelKind>{kind}, model, sample, base, project.calibration,
-                        {.folds = FoldsFor(sample, most_folds),
-                         .threads = threads,
-                         .by = FootingBy::kAllOfPosture});
-      trial.rmse_3d = folds.metrics[static_cast<int>(kind)].rmse_3d;
-      trial.errors = ErrorsByPosture(folds.distances[static_cast<int>(kind)]);
-      if (best.size() == 0) best = trial.errors;
-      const Eigen::ArrayXd gains = best - trial.errors;
-      const auto count = static_cast<double>(gains.size());
-      trial.gain = gains.mean();
-      trial.gain_sd = std::sqrt((gains - trial.gain).square().sum() / (count - 1.0) / count);
-      if (trial.gain > std::max(trial.gain_sd, kLeastGain * best.mean())) {
-        best = trial.errors;
-        chosen = tried.size();
-      }
-    } catch (const InputError&) {  // too few postures for folds: the estimate will say so
+    std::optional<ElasticityTrial> trial =
+        TryElasticity(recording, seed, most_folds, threads, project);
+    if (!trial) {
       project.elasticity = asked;
       return {};
     }
-    tried.push_back(std::move(trial));
+    trial->kinds = candidate.kinds;
+    if (best.size() == 0) best = trial->errors;
+    const Eigen::ArrayXd gains = best - trial->errors;
+    const auto count = static_cast<double>(gains.size());
+    trial->gain = gains.mean();
+    trial->gain_sd = std::sqrt((gains - trial->gain).square().sum() / (count - 1.0) / count);
+    if (trial->gain > std::max(trial->gain_sd, kLeastGain * best.mean())) {
+      best = trial->errors;
+      chosen = tried.size();
+    }
+    tried.push_back(std::move(*trial));
   }
   tried[chosen].chosen = true;
   project.elasticity.torsion = candidates[chosen].torsion;

@@ -29,6 +29,12 @@ struct ElasticityTrial {
   bool chosen = false;
 };
 
+/// What the elasticity of the project brings on postures that were left out: `rmse_3d` and
+/// `errors`. Nothing where there are too few postures for folds.
+std::optional<ElasticityTrial> TryElasticity(const Recording& recording,
+                                             std::optional<std::uint64_t> seed, int most_folds,
+                                             int threads, const Project& project);
+
 /// Decides on the elasticity of the joints in a table of postures where the project leaves it open:
 /// torsion, then bending, enters when it lowers the error of left-out postures (`most_folds` folds,
 /// on at most 300 postures) by more than the standard error of that gain, and by more than 2 %.

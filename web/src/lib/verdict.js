@@ -46,7 +46,7 @@ export function undetermined(summary) {
 
 /**
  * The verdict as {state: 'deploy' | 'check' | 'reject', word, sentence, rest}: the sentence says
- * from where to where the errors went and on what data, `rest` what was not identifiable.
+ * from where to where the errors went and on what data, `rest` what the recording hardly tells.
  */
 export function verdict(summary) {
   const errors = judgedErrors(summary);
@@ -58,7 +58,7 @@ export function verdict(summary) {
   const open = undetermined(summary);
   const rest = open.length === 0
     ? 'The recording determines every identifiable parameter of the model.'
-    : `The recording does not determine ${list(open, 4)}: ${open.length === 1 ? 'this parameter stays' : 'these parameters stay'} at nominal.`;
+    : `The recording hardly tells ${list(open, 4)}: ${open.length === 1 ? 'this parameter has its most probable value' : 'these parameters have their most probable values'}.`;
   const remarks = (summary.remarks ?? []).length > 0;
   return {
     state: remarks ? 'check' : 'deploy',

@@ -15,12 +15,13 @@ function inUserUnit(parameter) {
   return withSd(parameter.value * factor, parameter.sd === null ? null : parameter.sd * factor, digits);
 }
 
-/** One parameter: value and standard deviation; greyed where it is held. */
+/** One parameter: value and standard deviation; grey where the recording hardly tells it, or where it is held. */
 export function valueCell(parameter) {
   if (!parameter) return '';
   const {unit, factor} = userUnit(parameter.unit);
   const words = `${parameter.name}: ${STATUS_WORDS[parameter.status] ?? parameter.status}`;
-  if (parameter.status !== 'estimated') {
+  const told = parameter.status === 'estimated';
+  if (!told && parameter.status !== 'unsupported') {
     const short = {not_in_model: '–', held: 'held'}[parameter.status] ?? '0';
     return h('span', {class: 'held', title: words, 'data-parameter': parameter.name}, short,
              h('span', {class: 'sr-only'}, ` ${STATUS_WORDS[parameter.status] ?? ''}`));
@@ -28,11 +29,12 @@ export function valueCell(parameter) {
   const value = parameter.value * factor;
   const text = inUserUnit(parameter);
   const k = stiffness(parameter);
-  return h('span', {class: parameter.significant ? 'estimate significant' : 'estimate',
+  return h('span', {class: told ? (parameter.significant ? 'estimate significant' : 'estimate') : 'estimate held',
                     title: `${words}; ${text.value} ± ${text.sd} ${unit} (to six digits ${significant(value, 6)})` +
                       (k ? `; stiffness ${withSd(k.value, k.sd).value} ${k.unit}` : ''),
                     'data-parameter': parameter.name, 'data-value': parameter.value},
-           h('span', {class: 'value'}, text.value), h('span', {class: 'sd'}, parameter.sd === null ? '' : `±${text.sd}`));
+           h('span', {class: 'value'}, text.value), h('span', {class: 'sd'}, parameter.sd === null ? '' : `±${text.sd}`),
+           told ? null : h('span', {class: 'sr-only'}, ` ${STATUS_WORDS[parameter.status]}`));
 }
 
 /** What the columns and the short marks of the table mean. */
@@ -40,7 +42,7 @@ function geometryNote(joints) {
   const kinds = kindsOf(joints).filter(({kind}) => !kind.startsWith('compliance'));
   const statuses = new Set([...joints.values()].flatMap((kindsOfJoint) => [...kindsOfJoint.values()].map((p) => p.status)));
   return [`${kinds.map(({symbol, what}) => `${symbol}: ${what}`).join('; ')}.`,
-    statuses.has('unsupported') && ' 0 marks one that this recording tells hardly, or only together with others.',
+    statuses.has('unsupported') && ' Grey values are the most probable ones: this recording tells them hardly, or only together with others.',
     statuses.has('held') && ' “held” marks one that the project file keeps at nominal.',
     h('span', {class: 'on-screen'}, ' Point at a value to see more digits.')].filter(Boolean);
 }
@@ -148,7 +150,7 @@ export function table1Section(report) {
   const filter = chains.length > 1 && choice('Chain', [{value: '', text: 'All chains'},
     ...chains.map((c) => ({value: c.name, text: c.name.replaceAll('_', ' ')}))], '', choose);
   return section('parameters', 'Errors', 'Errors of the robot',
-    'The table shows how far each parameter of the robot is from its nominal value: the estimate ± its standard deviation. A value is bold where its 95 % interval excludes the nominal value, and grey where the parameter stays at nominal.',
+    'The table shows how far each parameter of the robot is from its nominal value: the estimate ± its standard deviation. A value is bold where its 95 % interval excludes the nominal value, and grey where the recording hardly tells it.',
     filter, figure({
       title: 'Geometry',
       note: geometryNote(joints),

@@ -20,6 +20,13 @@ function linkToFindings(report) {
   return h('p', {class: 'verdict-link'}, h('a', {href: '#findings'}, `Read ${list(numbers.map(([n, word]) => plural(n, word)))}`));
 }
 
+/** What a controller reaches that corrects elasticity as well; nothing where that is no other model. */
+function compensated(summary) {
+  const {urdf, compensated: both} = summary.deployed ?? {};
+  if (typeof both?.rmse_3d_mm !== 'number' || both.rmse_3d_mm === urdf?.rmse_3d_mm) return null;
+  return fact(fixed(both.rmse_3d_mm), 'mm', 'the same with compensation of elasticity, of which a URDF has none');
+}
+
 function facts(summary) {
   const errors = judgedErrors(summary);
   const counts = countByStatus(summary.parameters ?? [], (summary.legs ?? []).map((leg) => leg.name));
@@ -28,6 +35,7 @@ function facts(summary) {
   return h('dl', {class: 'facts'},
     errors && fact([fixed(errors.before), h('span', {class: 'arrow', 'aria-label': 'to'}, ' → '),
                     h('strong', {}, fixed(errors.after))], 'mm', `RMSE of the marker distances ${errors.on.includes('held') || errors.on.includes('no part') ? 'on held-out data' : 'on the data of the fit'}`),
+    compensated(summary),
     fact(count(counts.estimated ?? 0), held ? `of ${count((counts.estimated ?? 0) + held)}` : '', 'joint and leg errors estimated'),
     fact(count(summary.postures), '', `postures, ${plural(summary.markers, 'marker')}`),
     fact(significant(summary.marker_sd_mm, 2), 'mm', 'standard deviation of the noise of a marker coordinate'),

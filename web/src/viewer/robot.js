@@ -15,17 +15,32 @@ function meshLoader(meshes) {
   };
 }
 
+function bone(length, direction) {
+  const rod = new THREE.Mesh(new THREE.CylinderGeometry(0.012, 0.012, length, 10),
+                             new THREE.MeshLambertMaterial({color: BONE}));
+  rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), direction.clone().normalize());
+  return rod;
+}
+
 /** A rod to each joint of a link, so that a robot without shapes can be seen as well. */
 function addBones(link) {
   for (const joint of link.children.filter((child) => child.isURDFJoint)) {
     const length = joint.position.length();
     if (length < 1e-3) continue;
-    const rod = new THREE.Mesh(new THREE.CylinderGeometry(0.012, 0.012, length, 10),
-                               new THREE.MeshLambertMaterial({color: BONE}));
+    const rod = bone(length, joint.position);
     rod.position.copy(joint.position).multiplyScalar(0.5);
-    rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), joint.position.clone().normalize());
     link.add(rod);
   }
+}
+
+/** A rod along each sliding joint of a link, as long as the joint is out: {joint, rod}. */
+function addSlides(link) {
+  return link.children.filter((child) => child.jointType === 'prismatic').map((joint) => {
+    const rod = bone(1, joint.axis);
+    rod.visible = false;
+    joint.add(rod);
+    return {joint, rod};
+  });
 }
 
 const meshesOf = (object) => {
@@ -51,8 +66,12 @@ export class Robot {
     this.object = loader.parse(urdf);
     this.links = this.object.links;
     const drawn = Object.values(this.links).filter((link) => meshesOf(link).length > 0).length;
+    this.slides = [];
     for (const link of Object.values(this.links)) {
-      if (meshesOf(link).length === 0 && drawn * 2 < Object.keys(this.links).length) addBones(link);
+      if (meshesOf(link).length === 0 && drawn * 2 < Object.keys(this.links).length) {
+        addBones(link);
+        this.slides.push(...addSlides(link));
+      }
       for (const mesh of meshesOf(link)) {
         const color = mesh.material.color?.clone() ?? new THREE.Color(BONE);
         mesh.material = new THREE.MeshLambertMaterial({color});
@@ -66,6 +85,12 @@ export class Robot {
       const joint = this.object.joints[name];
       if (joint && Number.isFinite(values[i])) joint.setJointValue(values[i]);
     });
+    for (const {joint, rod} of this.slides) {
+      const [value] = joint.jointValue;
+      rod.visible = Math.abs(value) > 1e-3;
+      rod.scale.y = Math.max(Math.abs(value), 1e-3);
+      rod.position.copy(joint.axis).normalize().multiplyScalar(-0.5 * value);
+    }
   }
 
   /** Puts the root link at a pose: position and quaternion x, y, z, w. */

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/drafting/limbs.hpp"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/drafting/draft.hpp"
+#include "elastocal/math/numbers.hpp"
+
+namespace elastocal {
+namespace {
+
+std::string LinkText(const std::string& name) {
+  return "<link name='" + name +
+         "'><inertial><mass value='1'/><inertia ixx='0.01' ixy='0' ixz='0' "
+         "iyy='0.01' iyz='0' izz='0.01'/></inertial></link>";
+}
+
+std::string JointText(const std::string& parent, const std::string& child, const std::string& more,
+                      const std::string& xyz = "0 0 0.1") {
+  return LinkText(child) + "<joint name='" + child + "_joint' type='revolute'><parent link='" +
+         parent + "'/><child link='" + child + "'/><origin xyz='" + xyz +
+         "'/><axis xyz='0 1 0'/><limit lower='-1' upper='1' effort='50' velocity='2'/>" + more +
+         "</joint>";
+}
+
+/// Two arms and a neck of three joints on a trunk, the second of which follows the first.
+std::string RobotWithNeck(bool with_pan) {
+  std::string text = "<robot name='r'>" + LinkText("base") + JointText("base", "waist", "") +
+                     JointText("waist", "trunk", "");
+  for (const std::string side : {"l", "r"}) {
+    const std::string y = side == "l" ? "0.2" : "-0.2";
+    text += JointText("trunk", side + "_shoulder", "", "0 " + y + " 0.4") +
+            JointText(side + "_shoulder", side + "_elbow", "", "0 0 -0.4") +
+            JointText(side + "_elbow", side + "_wrist", "", "0 0 -0.4");
+  }
+  text += JointText("trunk", "lower_neck", "", "0 0 0.45") +
+          JointText("lower_neck", "upper_neck",
+                    "<mimic joint='lower_neck_joint' multiplier='0.5'/>", "0 0 0.08");
+  if (with_pan) text += JointText("upper_neck", "head", "", "0 0 0.05");
+  return text + "</robot>";
+}
+
+std::string EndOfNeck(const std::string& urdf) {
+  const ProjectDraft draft = DraftProject(urdf, "r.urdf", {});
+  for (const Limb& limb : draft.limbs.limbs) {
+    const std::string& tip = draft.tree.links[Size(limb.tip_link)].name;
+    if (tip.find("neck") != std::string::npos || tip == "head") return tip;
+  }
+  return "";
+}
+
+TEST(Limbs, GoOnBehindAJointThatFollows) {
+  EXPECT_EQ(EndOfNeck(RobotWithNeck(true)), "head");
+  // A finger ends with what follows: nothing behind it moves by itself.
+  EXPECT_EQ(EndOfNeck(RobotWithNeck(false)), "lower_neck");
+}
+
+}  // namespace
+}  // namespace elastocal
