@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "elastocal/calibration/marker_places.hpp"
 #include "elastocal/math/dense.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
@@ -106,7 +107,7 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
     pattern[i] = length / unit[i];
     told += std::abs(length) > kLeastLength ? 1 : 0;
   }
-  if (told < kFewestLengths || !options.earlier.empty()) return std::nullopt;
+  if (told < kFewestLengths || KnowsRobot(options.earlier)) return std::nullopt;
   const Eigen::VectorXd x = result.delta(fitted).cwiseQuotient(unit);
   Eigen::MatrixXd A = unit.asDiagonal() * result.posterior.data_information * unit.asDiagonal();
   const Eigen::VectorXd b = A * x + x;  // of the data alone

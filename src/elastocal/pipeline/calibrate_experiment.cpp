@@ -23,6 +23,7 @@
 #include "elastocal/pipeline/choose_model.hpp"
 #include "elastocal/pipeline/cross_validate.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
+#include "elastocal/pipeline/known_places.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/recorded/repeated_trials.hpp"
 #include "elastocal/robot/kinematics.hpp"
@@ -317,8 +318,11 @@ CalibrationRun CalibrateExperiment(const Project& given,
   // |y^ - y(delta)|^2 while the pose F(q_i, delta) of the supporting foot stays what it was. Each
   // residual is weighed by its standard deviation, which follows from the residuals, and a prior
   // around the nominal robot takes the place of parameters held by hand.
-  CalibrationResult calibrated = Calibrate(robot.model, work.recording(), robot.base,
-                                           ModelKinds(robot.model).back(), settings);
+  // Not in the paper: places of markers that were measured are known beforehand.
+  const std::vector<MarkerMeasurement> places = OpenMarkerPlaces(
+      options.marker_places, project, work.as_recorded.calibration, robot.knocks, run.warnings);
+  CalibrationResult calibrated =
+      CalibrateWithPlaces(places, robot, work.recording(), project.calibration, run.warnings);
 
   // Section 6.1.4. Simpler models (not calibrated, geometric) on the same data.
   run.comparison = CompareModels(std::move(calibrated), robot.model, work.recording(), robot.base,
