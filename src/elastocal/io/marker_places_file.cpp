@@ -85,7 +85,7 @@ std::vector<MarkerMeasurement> ReadMarkerPlaces(const std::filesystem::path& fil
     roles[kPlaceColumns[i]] = static_cast<int>(i);
   }
   const std::vector<int> columns = FindColumns(table, roles, kPlaceColumns.size(),
-                                               "; marker,x_mm,y_mm,z_mm,sd_mm and link are read");
+                                               "marker, x_mm, y_mm, z_mm, sd_mm and link are read");
   for (const int needed : {kMarker, kX, kY, kZ, kSd}) {
     if (columns[static_cast<std::size_t>(needed)] >= 0) continue;
     table.Fail("there is no column '" +
