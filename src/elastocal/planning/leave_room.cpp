@@ -12,7 +12,8 @@
 namespace elastocal {
 namespace {
 
-constexpr double kMostShare = 0.1;  // of a range, at either end
+constexpr double kMostShare = 0.1;    // of a range, at either end
+constexpr double kMostInside = 0.02;  // likewise: what design keeps by default
 
 }  // namespace
 
@@ -24,11 +25,14 @@ Project LeaveRoom(Project project, double room_rad) {
     const double range = joint.limits.upper - joint.limits.lower;
     if (joint.type != JointType::kRevolute || !std::isfinite(range) || range <= 0.0) continue;
     const double room = std::min(room_rad, kMostShare * range);
+    const auto i = static_cast<Eigen::Index>(c);
+    double &lower = project.motion.lower[i], &upper = project.motion.upper[i];
+    // Postures stay as far inside as they were, which a motion needs to keep its balance.
+    const auto kept = [&](double gap) { return room + std::clamp(gap, 0.0, kMostInside * range); };
+    lower = std::max(lower, joint.limits.lower + kept(lower - joint.limits.lower));
+    upper = std::min(upper, joint.limits.upper - kept(joint.limits.upper - upper));
     joint.limits.lower += room;
     joint.limits.upper -= room;
-    const auto i = static_cast<Eigen::Index>(c);
-    project.motion.lower[i] = std::max(project.motion.lower[i], joint.limits.lower);
-    project.motion.upper[i] = std::min(project.motion.upper[i], joint.limits.upper);
     const double rest = project.motion.rest[i];
     if (rest >= project.motion.lower[i] && rest <= project.motion.upper[i]) continue;
     throw InputError(fmt::format(
