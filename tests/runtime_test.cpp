@@ -189,6 +189,24 @@ TEST_F(Runtime, CommandPutsTheRealRobotWhereTheNominalOneIs) {
   }
 }
 
+// Under commands feet and root link are where the plan has them. A nominal robot at the positions
+// of the commands has its feet, and so the root link on them, elsewhere.
+TEST_F(Runtime, OnTwoFeetTheRootIsWhereTheCommandsPutIt) {
+  Compensator robot = Make();
+  const Eigen::VectorXd q = project_.motion.rest;
+  ASSERT_EQ(DescribeStatus(robot.Command(q, kNoTorque, 3)), "");
+  const Eigen::VectorXd command = robot.command();
+  const auto foot = static_cast<std::size_t>(Legs()[0].foot_link);
+  const auto other = static_cast<std::size_t>(Legs()[1].foot_link);
+  const std::vector<Transform> planned = LinkTransforms(project_.tree, q);
+  robot.Forward(command, kNoTorque, 3);
+  EXPECT_LT(Distance(robot.root_pose(), planned[foot].inverse()), 1e-4);
+  const std::vector<Transform> nominal = LinkTransforms(project_.tree, command);
+  EXPECT_GT((nominal[foot].inverse() * nominal[other]).translation().norm() -
+                (planned[foot].inverse() * planned[other]).translation().norm(),
+            1e-3);
+}
+
 TEST_F(Runtime, CorrectGivesARigidRobotThePlacesOfTheElasticOne) {
   Compensator robot = Make();
   Compensator rigid = Make(RuntimeContent::kGeometry);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "elastocal/calibration/marker_places.hpp"
 #include "elastocal/math/dense.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
@@ -172,7 +173,7 @@ std::optional<CommonScale> ScaleBeside(const KnownLengths& lengths,
 
 std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
                                                const CalibrationOptions& options) {
-  if (!options.earlier.empty()) return std::nullopt;
+  if (KnowsRobot(options.earlier)) return std::nullopt;
   const std::optional<KnownLengths> lengths = LengthsOf(result);
   if (!lengths) return std::nullopt;
   const Eigen::Index count = lengths->pattern.size();

@@ -12,6 +12,7 @@
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
+#include "elastocal/io/marker_places_file.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
@@ -38,6 +39,7 @@ CommandResult CalibrateByMarkers(const CalibrateOptions& options, const Project&
                            .accept = options.accept,
                            .prior = options.prior,
                            .days = options.days,
+                           .marker_places = options.marker_places,
                            .progress = TerminalSteps("reading and fitting", options.common.quiet)});
   return {.files = MakeCalibrationFiles(project, run),
           .json = {},
@@ -59,6 +61,15 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
     throw InputError("--fold-by " + options.fold_by + " is about recordings of trials");
   }
   std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
+  if (!options.marker_places.empty()) {
+    if (project.contact) {
+      throw InputError(
+          "--marker-places is about markers in recordings without contact and instruments; with "
+          "them, mounting_sd_mm of the instrument says how well its place is known");
+    }
+    ReadMarkerPlaces(options.marker_places, project);  // refused before what takes long
+    inputs.emplace_back(options.marker_places);
+  }
   OutputSet outputs;
   if (!options.prior.empty()) {
     const CalibrationFiles earlier = FindCalibrationFiles(options.prior);
@@ -139,6 +150,11 @@ void AddCalibrate(CLI::App& app, Action& action) {
       ->needs(prior)
       ->check(InBounds("calibrate --days"))
       ->capture_default_str();
+  command
+      ->add_option("--marker-places", options->marker_places,
+                   "Table (CSV) of markers whose places on their links were measured, with "
+                   "standard deviations: tells where frames of hands and soles of feet are")
+      ->type_name("FILE");
   AddAcceptOption(*command, options->accept);
   AddCommonOptions(*command, options->common);
   command->footer(

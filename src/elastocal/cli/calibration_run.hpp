@@ -20,6 +20,7 @@ struct CalibrateOptions {
   std::string zero_offsets = "origin";
   std::string prior;                ///< an earlier calibration; empty: none
   double days = 1.0;                ///< since then
+  std::string marker_places;        ///< table of measured ones; empty: none
   std::vector<std::string> accept;  ///< mistakes of the recording to correct
 };
 

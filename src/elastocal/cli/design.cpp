@@ -21,6 +21,7 @@
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/design_follow_up.hpp"
 #include "elastocal/planning/design_postures.hpp"
+#include "elastocal/planning/leave_room.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -35,7 +36,7 @@ struct DesignCommand {
   std::string after;  ///< an earlier calibration; empty: none
   bool check = false;
   std::vector<std::string> joints;
-  double days = 1.0, marker_noise_mm = 0.3;
+  double days = 1.0, marker_noise_mm = 0.3, limit_margin_deg = 0.0;
 };
 
 constexpr std::array kAlgorithms = {DesignAlgorithm::kNocp, DesignAlgorithm::kCocp,
@@ -106,7 +107,8 @@ int FollowUp(const DesignCommand& command, const Project& project) {
 }
 
 int Design(const DesignCommand& command) {
-  const Project project = ReadProject(command.project);
+  const Project project =
+      LeaveRoom(ReadProject(command.project), command.limit_margin_deg * M_PI / 180.0);
   if (project.contact) {
     return RunObservationDesign({command.common, command.output, command.count, command.after,
                                  command.days, command.check, command.joints},
@@ -196,6 +198,12 @@ void AddDesign(CLI::App& app, Action& action) {
   command->add_option("--chains", options->chains, "Only these chains")
       ->expected(-1)
       ->type_name("NAME");
+  command
+      ->add_option("--limit-margin-deg", options->limit_margin_deg,
+                   "Left free at either end of the limits of turning joints, deg, at most a tenth "
+                   "of a range: room for `compensate`, see plan")
+      ->check(InBounds("plan --limit-margin-deg"))
+      ->capture_default_str();
   command
       ->add_option("--count", options->count,
                    "Exactly so many postures for each chain instead of as many as it takes; with "

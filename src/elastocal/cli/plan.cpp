@@ -17,6 +17,7 @@
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
+#include "elastocal/planning/leave_room.hpp"
 #include "elastocal/planning/plan_motion.hpp"
 
 namespace elastocal::cli {
@@ -28,6 +29,7 @@ struct PlanCommand {
   std::string kind;  ///< of a validation motion; empty: postures are given
   std::optional<double> zmp_margin_mm, lift_mm, inset_mm, approach_mm;
   bool unbalanced = false, unstabilised = false;
+  double limit_margin_deg = 0.0;
   MotionPlanOptions options;
   MotionTrialOptions tries{.robots = 0};
 };
@@ -124,11 +126,12 @@ void PrintPlan(const Project& project, const MotionPlan& plan, const CommonOptio
 }
 
 int Plan(const PlanCommand& command) {
-  const Project project = ReadProject(command.project);
+  const Project described = ReadProject(command.project);
+  const Project project = LeaveRoom(described, command.limit_margin_deg * M_PI / 180.0);
   std::vector<ChainPostures> postures;
   std::vector<std::string> chains;
   if (command.kind.empty()) {
-    postures = ReadPostureFile(command.postures, project);
+    postures = ReadPostureFile(command.postures, described);
     for (const ChainPostures& chain : postures) chains.push_back(chain.chain);
   } else {
     chains = ValidationChains(project);
@@ -246,6 +249,9 @@ void AddLimits(CLI::App& command, PlanCommand& options) {
       ->check(InBounds("plan --torque-share"));
   AddNumber(command, "--velocity-share", plan.limits.velocity_share,
             "Share of the velocity limits to be used");
+  AddNumber(command, "--limit-margin-deg", options.limit_margin_deg,
+            "Left free at either end of the limits of turning joints, deg, at most a tenth of a "
+            "range: room for `compensate`");
 }
 
 /// Robots that play it, and balance.

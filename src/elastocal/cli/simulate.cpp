@@ -39,6 +39,7 @@ struct SimulateCommand {
   std::string stabiliser = "both";
   double until_s = DeployOptions().until_s;
   std::optional<std::uint64_t> robot_seed;
+  double marker_places_mm = 0.0;  ///< sd of the table of measured places; 0: none
   bool nominal = false, free = false, matched = false, force = false;
   std::map<std::string, std::string> flags;  ///< options of the experiment given, by key
 };
@@ -71,6 +72,7 @@ SimulationOptions MakeOptions(const SimulateCommand& command, const Project& pro
   options.experiment.robot_seed = command.robot_seed;
   options.trials = command.trials;
   options.matched = command.matched;
+  options.marker_places_sd = 1e-3 * command.marker_places_mm;
   if (command.postures.empty() && command.motion.empty()) return options;
   const std::string& file = command.motion.empty() ? command.postures : command.motion;
   options.motion =
@@ -131,11 +133,13 @@ int Deploy(const SimulateCommand& command) {
 int SimulateInstruments(const SimulateCommand& command, const Project& project) {
   const bool of_trials = !command.motion.empty() || !command.kind.empty() ||
                          !command.chains.empty() || command.trials != "all" || command.matched ||
-                         command.free;
+                         command.free || command.marker_places_mm > 0.0;
   if (of_trials) {
-    throw InputError(project.file.string() +
-                     ": with contact or instruments, the robot holds postures: --motion, --kind, "
-                     "--chains, --trials, --matched and --free are for projects without them");
+    throw InputError(
+        project.file.string() +
+        ": with contact or instruments, the robot holds postures: --motion, --kind, "
+        "--chains, --trials, --matched, --free and --marker-places-mm are for projects without "
+        "them");
   }
   SimulateObservationsCommand of;
   of.common = command.common;
@@ -287,6 +291,11 @@ void AddSimulate(CLI::App& app, Action& action) {
                    "Seed of the robot's errors, if another than --seed: the same robot, recorded "
                    "again with other postures and noise")
       ->check(IsSeed);
+  command
+      ->add_option("--marker-places-mm", options->marker_places_mm,
+                   "Also writes marker_places.csv for `calibrate --marker-places`: the places of "
+                   "the markers on their links, measured with this standard deviation, mm")
+      ->check(InBounds("simulate --marker-places-mm"));
   AddSettings(*command, *options);
   command->footer("Example: elastocal simulate models/talos/project.yaml -o recording");
   command->callback([&action, options] { action = [options] { return Simulate(*options); }; });

@@ -16,6 +16,7 @@
 #include "elastocal/description/urdf_writer.hpp"
 #include "elastocal/exports/export_texts.hpp"
 #include "elastocal/exports/held_out_gains.hpp"
+#include "elastocal/exports/open_frames.hpp"
 #include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/files/xml_edit.hpp"
 #include "elastocal/io/linkage_file.hpp"
@@ -295,8 +296,12 @@ std::vector<ExportFormat> ExportFormats() {
 
 ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options) {
   CheckExportOptions(options);
-  const Kept kept = KeepWhatHelps(robot, ReadEstimate(robot.calibration.source), options);
+  const CalibrationEstimate estimate = ReadEstimate(robot.calibration.source);
+  const Kept kept = KeepWhatHelps(robot, estimate, options);
   ExportedCalibration exported{TextOf(robot, kept, options), kept.comments};
+  for (const std::string& open : DescribeOpenFrames(robot.project, estimate)) {
+    exported.notes.push_back(open);
+  }
   const bool at_run_time = options.format == "c99" || options.format == "runtime";
   if (at_run_time && MakeRuntimeModel(robot.project, kept.calibration).tips.empty()) {
     exported.notes.push_back("Commands are left as they are: " + NothingToCorrect());

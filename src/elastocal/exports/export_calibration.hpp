@@ -44,8 +44,9 @@ struct ExportOptions {
 
 struct ExportedCalibration {
   std::string text;  ///< of the file
-  /// Which joints stay nominal and why, where that was asked for (comments of the file, too), and
-  /// that a robot without chains has no commands to correct.
+  /// Which joints stay nominal and why, where that was asked for (comments of the file, too), that
+  /// a robot without chains has no commands to correct, and which frames nothing has told
+  /// (DescribeOpenFrames).
   std::vector<std::string> notes;
 };
 

@@ -177,6 +177,9 @@ std::vector<Bound> MakeBounds() {
       {"compare --level", "", 1e-9, 0.5, "a share"},
       {"check --days", "d", 0, 1e5, "the same day; a robot's life"},
       {"calibrate --days", "d", 0, 1e5, "the same day; a robot's life"},
+      {"marker places x_mm, y_mm, z_mm", "mm", -1e4, 1e4, kBody},
+      {"marker places sd_mm", "mm", 1e-3, 100, "a measuring machine; a guess"},
+      {"simulate --marker-places-mm", "mm", 1e-3, 100, "a measuring machine; a guess"},
       {"design --plateau", "", 0, 1, "a share"},
       {"plan --move-s", "s", 0.1, 1e3, "a robot's dynamics; patience"},
       {"plan --rest-s", "s", 1, 1e3, "what a rest needs to be found; patience"},
@@ -187,6 +190,7 @@ std::vector<Bound> MakeBounds() {
       {"plan --torque-share", "", 0.01, 1, "a share"},
       {"plan --velocity-share", "", 0.01, 1, "a share"},
       {"plan --floor-friction", "", 0, 10, "rubber has 1"},
+      {"plan --limit-margin-deg", "deg", 0, 45, "more is no room for a correction"},
       {"plan --leg-geometry-scale", "", 0, 100, "a factor on errors of millimetres"},
       {"compensate --most-left-mm", "mm", 0, 1e3, "an arm"},
   };

@@ -39,7 +39,7 @@ fs::path PathOf(const YamlValue& value, const fs::path& folder) {
 /// `{kfold: 10, elastic: true}` as `--kfold 10 --elastic`; files are seen from `folder`.
 std::vector<std::string> ReadWords(const std::optional<YamlValue>& options,
                                    const fs::path& folder) {
-  const std::set<std::string> files{"prior", "postures", "motion", "settings"};
+  const std::set<std::string> files{"prior", "postures", "motion", "settings", "marker-places"};
   std::vector<std::string> words;
   if (!options) return words;
   for (const auto& [key, value] : options->Entries()) {

@@ -23,6 +23,7 @@
 #include "elastocal/pipeline/choose_model.hpp"
 #include "elastocal/pipeline/cross_validate.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
+#include "elastocal/pipeline/known_places.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/recorded/repeated_trials.hpp"
 #include "elastocal/robot/kinematics.hpp"
@@ -316,8 +317,12 @@ void MakeModel(Work& work) {
 /// Section 6.1.4. Simpler models (not calibrated, geometric) on the same data.
 void Estimate(Work& work) {
   const RecordedModel& robot = work.robot;
-  CalibrationResult calibrated = Calibrate(robot.model, work.recording(), robot.base,
-                                           ModelKinds(robot.model).back(), work.settings());
+  // Not in the paper: places of markers that were measured are known beforehand.
+  const std::vector<MarkerMeasurement> places =
+      OpenMarkerPlaces(work.options.marker_places, work.project, work.as_recorded.calibration,
+                       robot.knocks, work.run.warnings);
+  CalibrationResult calibrated = CalibrateWithPlaces(places, robot, work.recording(),
+                                                     work.project.calibration, work.run.warnings);
   work.run.comparison =
       CompareModels(std::move(calibrated), robot.model, work.recording(), robot.base,
                     work.settings(), OfStep(work.options.progress, "fit"));

@@ -45,6 +45,9 @@ struct ExperimentOptions {
   /// elasticity and causes stays.
   std::filesystem::path prior = {};
   double days = 1.0;
+  /// Where markers are on their links, as measured (ReadMarkerPlaces); empty: nobody knows. Places
+  /// that contradict the data are left out.
+  std::filesystem::path marker_places = {};
   StepProgress progress = {};
 };
 

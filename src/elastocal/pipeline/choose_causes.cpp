@@ -7,6 +7,7 @@
 #include <map>
 #include <string_view>
 
+#include "elastocal/calibration/marker_places.hpp"
 #include "elastocal/calibration/posterior.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/statistics.hpp"
@@ -103,7 +104,7 @@ CauseReport StudyObservedCauses(const Project& project, const ObservedRobot& mod
 CauseReport StudyCauses(const Project& given, const Measurements& measured,
                         std::optional<std::uint64_t> seed) {
   Project project = given;
-  if (project.calibration.earlier.empty()) project.elasticity.extra.clear();
+  if (!KnowsRobot(project.calibration.earlier)) project.elasticity.extra.clear();
   Measurements own = measured;
   const RecordedModel robot = MakeRecordedModel(project, seed, own, KnockSearch::kNone);
   const Recording& recording = own.calibration;

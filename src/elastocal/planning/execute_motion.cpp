@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/parallel.hpp"
+#include "elastocal/planning/root_watch.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 
 namespace elastocal {
@@ -25,33 +27,6 @@ constexpr double kLook = 0.01;           // s
 constexpr int kPictureEvery = 20;        // looks between two pictures, or more
 constexpr int kMostPictures = 2000;
 
-class Sum {
- public:
-  void Add(const Transform& wanted, const Transform& got) {
-    Add((got.translation() - wanted.translation()).norm(),
-        Eigen::AngleAxisd(wanted.linear().transpose() * got.linear()).angle());
-  }
-  void Add(double distance, double angle) {
-    squares_ += distance * distance;
-    turns_ += angle * angle;
-    result_.max_m = std::max(result_.max_m, distance);
-    result_.max_rad = std::max(result_.max_rad, angle);
-    ++result_.samples;
-  }
-  PlaceError Result() const {
-    PlaceError result = result_;
-    if (result.samples > 0) {
-      result.rms_m = std::sqrt(squares_ / result.samples);
-      result.rms_rad = std::sqrt(turns_ / result.samples);
-    }
-    return result;
-  }
-
- private:
-  PlaceError result_;
-  double squares_ = 0.0, turns_ = 0.0;
-};
-
 /// Looks from one picture to the next: a multiple of `kEvery`, more for a long motion.
 int LooksAPicture(const JointMotion& plan) {
   const double duration = plan.time_s[plan.time_s.size() - 1] - plan.time_s[0];
@@ -62,8 +37,12 @@ int LooksAPicture(const JointMotion& plan) {
 /// Compares where a robot is with where the plan has it.
 class PlanWatch {
  public:
-  PlanWatch(const Project& project, const TrueRobot& robot, const JointMotion& plan)
-      : project_(project), robot_(robot), plan_(plan), looks_a_picture_(LooksAPicture(plan)) {
+  PlanWatch(const Project& project, const TrueRobot& robot, const JointMotion& plan, RootWatch root)
+      : project_(project),
+        robot_(robot),
+        plan_(plan),
+        looks_a_picture_(LooksAPicture(plan)),
+        root_(std::move(root)) {
     for (const Chain& chain : project.chains) {
       const int body = project.tree.links[static_cast<std::size_t>(chain.tip_link)].body;
       const bool is_foot =
@@ -95,6 +74,7 @@ class PlanWatch {
                        T_got * SolePose(link, body));
     }
     if (looks_ % kEvery != 0) return;
+    root_.Look(support, body);
     for (int link : hands_links_) {
       hands_.Add(T_wanted * T_root_link[static_cast<std::size_t>(link)],
                  T_got * body.LinkPose(link));
@@ -119,6 +99,8 @@ class PlanWatch {
     execution.landing = landing_sum_.Result();
     execution.waist = waist_.Result();
     execution.centre_of_mass = com_.Result();
+    execution.root_on_one_foot = root_.on_one_foot();
+    execution.root_on_several_feet = root_.on_several_feet();
   }
 
  private:
@@ -182,7 +164,8 @@ class PlanWatch {
   long looks_ = 0;
   int looks_a_picture_;
   std::optional<PlaybackRecorder> recorder_;
-  Sum hands_, feet_, landing_sum_, waist_, com_;
+  RootWatch root_;
+  PlaceErrorSum hands_, feet_, landing_sum_, waist_, com_;
 };
 
 /// With all feet on the floor where the motion does not say which.
@@ -221,6 +204,12 @@ JointMotion Until(double time_s, JointMotion planned) {
   return planned;
 }
 
+/// What a controller knows of a calibration.
+RuntimeContent ContentOf(DeployAs as) {
+  if (as == DeployAs::kNominal) return RuntimeContent::kNominal;
+  return as == DeployAs::kUrdf ? RuntimeContent::kGeometry : RuntimeContent::kEverything;
+}
+
 /// What is commanded for the plan, or why nothing can be.
 struct Commanded {
   Eigen::MatrixXd q;
@@ -230,10 +219,8 @@ struct Commanded {
 Commanded Commands(const Project& project, const StoredCalibration& calibration,
                    const JointMotion& planned, DeployAs as, MotionLoads loads) {
   if (as == DeployAs::kNominal) return {planned.q, ""};
-  const RuntimeContent content =
-      as == DeployAs::kUrdf ? RuntimeContent::kGeometry : RuntimeContent::kEverything;
   CompensatedMotion corrected = CompensateMotion(
-      project, MakeRuntimeModel(project, calibration, content), planned, {.loads = loads});
+      project, MakeRuntimeModel(project, calibration, ContentOf(as)), planned, {.loads = loads});
   return {std::move(corrected.planned.motion.q),
           corrected.broken.empty() ? "" : corrected.broken.front()};
 }
@@ -312,7 +299,8 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
     execution.refused = commands[i / runs].refused;
     if (!execution.refused.empty()) return;
     Stabiliser stabiliser(project.tree, project.soles);
-    PlanWatch watch(project, robot, planned);
+    PlanWatch watch(project, robot, planned,
+                    RootWatch(project, calibration, ContentOf(execution.as)));
     execution.run = StandThrough(
         robot, project.soles, planned, physics,
         {.stabiliser = execution.stabilised ? &stabiliser : nullptr,
@@ -345,6 +333,8 @@ std::string FormatExecutions(const RobotTree& tree, const std::string& calibrati
                                   {"landing", ErrorJson(one.landing)},
                                   {"waist", ErrorJson(one.waist)},
                                   {"centre_of_mass", ErrorJson(one.centre_of_mass)},
+                                  {"root_on_one_foot", ErrorJson(one.root_on_one_foot)},
+                                  {"root_on_several_feet", ErrorJson(one.root_on_several_feet)},
                                   {"stabiliser_largest_shift_mm", 1e3 * one.run.largest_shift},
                                   {"least_zmp_margin_mm", 1e3 * one.run.least_zmp_margin},
                                   {"largest_lean_deg", one.run.largest_lean * 180.0 / M_PI}});

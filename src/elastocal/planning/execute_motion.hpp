@@ -8,6 +8,7 @@
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/math/progress.hpp"
 #include "elastocal/planning/compensate_motion.hpp"
+#include "elastocal/planning/place_error.hpp"
 #include "elastocal/planning/playback.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/simulation/stand_through.hpp"
@@ -24,14 +25,6 @@ enum class DeployAs {
 /// "nominal", "urdf", "compensated".
 const char* DeployName(DeployAs as);
 
-/// How far something was from where the plan meant it, over all samples: root mean square and
-/// largest value.
-struct PlaceError {
-  double rms_m = 0.0, max_m = 0.0;
-  double rms_rad = 0.0, max_rad = 0.0;
-  int samples = 0;
-};
-
 /// A motion as a robot executed it. Poses are measured by the simulator, in the frame of the first
 /// foot that the plan has on the floor, and compared with those of the nominal robot in the plan.
 struct Execution {
@@ -46,6 +39,9 @@ struct Execution {
   PlaceError landing;  ///< of a swinging foot 50 ms before the plan sets it down
   PlaceError waist;    ///< the root link
   PlaceError centre_of_mass;
+  /// Where the controller has the root link on the first foot, by its encoders and what it knows,
+  /// against the simulator: on one foot, and on several.
+  PlaceError root_on_one_foot, root_on_several_feet;
   /// Of the first run of each robot, the stabilised one where there is one: five pictures a second,
   /// fewer where they would be more than 2000.
   Playback playback = {};

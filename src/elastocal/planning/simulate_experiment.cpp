@@ -8,6 +8,7 @@
 
 #include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/io/joint_log.hpp"
+#include "elastocal/io/marker_places_file.hpp"
 #include "elastocal/io/motion_file.hpp"
 #include "elastocal/io/motor_columns.hpp"
 #include "elastocal/io/posture_file.hpp"
@@ -111,6 +112,17 @@ void SeeBars(const std::vector<ReferenceLength>& references,
   }
 }
 
+/// The places of the markers on the links of the robot as it is, measured with noise.
+std::vector<MarkerMeasurement> MeasurePlaces(const std::vector<Marker>& markers, double sd,
+                                             std::uint64_t seed) {
+  Random random(seed ^ 0x91ace);
+  std::vector<MarkerMeasurement> places;
+  for (const Marker& marker : markers) {
+    places.push_back({marker.name, marker.p_link_marker + random.NormalVector(3, sd), sd});
+  }
+  return places;
+}
+
 SimulatedTrial Play(const Simulation& simulation, std::size_t trial) {
   return simulation.matched ? RunMatchedTrial(*simulation.matched, trial)
                             : RunTrial(simulation.experiment, trial);
@@ -171,6 +183,11 @@ Simulation PrepareSimulation(const Project& project, const SimulationOptions& op
                      ": the root is free (recording: root), and a matched truth is that of a root "
                      "link that is held or stands");
   }
+  if (options.matched && options.marker_places_sd > 0.0) {
+    throw InputError(
+        "places of markers are measured on a simulated robot (--marker-places-mm); a matched truth "
+        "has none");
+  }
   Simulation simulation;
   if (options.motion) {
     settings.motion.seed = settings.seed;
@@ -189,6 +206,10 @@ Simulation PrepareSimulation(const Project& project, const SimulationOptions& op
     simulation.experiment = simulation.matched->plan;
   }
   simulation.bars = DrawBars(project.recording.reference_lengths, settings.seed);
+  if (options.marker_places_sd > 0.0) {
+    simulation.marker_places =
+        MeasurePlaces(simulation.experiment.robot.markers, options.marker_places_sd, settings.seed);
+  }
   return simulation;
 }
 
@@ -222,6 +243,9 @@ SimulationRun PlaySimulation(const Project& project, const Simulation& simulatio
   outputs.Set(files.truth, simulation.matched
                                ? FormatMatchedTruth(*simulation.matched, simulation.chosen, sensors)
                                : FormatTruth(simulation.experiment, simulation.chosen, sensors));
+  if (!files.marker_places.empty()) {
+    outputs.Set(files.marker_places, FormatMarkerPlaces(simulation.marker_places));
+  }
   Experiment experiment;
   experiment.trials = files.trials;
   outputs.Set(files.experiment, FormatExperiment(files.folder, experiment, project));

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/calibration/marker_places.hpp"
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/io/experiment.hpp"
 #include "elastocal/math/progress.hpp"
@@ -26,7 +27,10 @@ struct SimulationOptions {
   /// Plays this motion, or these postures, instead of the trials that the experiment plans.
   std::optional<JointMotion> motion = {};
   GivenMotionOptions given = {};  ///< how `motion` becomes trials; see TrialNameOf
-  int threads = 2;                ///< trials played at a time; the result does not depend on it
+  /// Standard deviation with which the places of the markers on their links are measured, m; 0:
+  /// they are not.
+  double marker_places_sd = 0.0;
+  int threads = 2;  ///< trials played at a time; the result does not depend on it
 };
 
 /// An experiment that is ready to be played.
@@ -36,6 +40,7 @@ struct Simulation {
   std::vector<std::size_t> chosen;                ///< of experiment.trials: those to be played
   /// The bars of the project's reference lengths as they are made, beside the robot: both ends, m.
   std::vector<std::array<Eigen::Vector3d, 2>> bars = {};
+  std::vector<MarkerMeasurement> marker_places = {};  ///< as measured on the links
 };
 
 /// Draws the robot and plans the trials. Throws InputError for a trial, chain or fault that is not
@@ -49,6 +54,7 @@ std::vector<std::string> SimulationWarnings(const Project& project, const Simula
 /// The files of a recording folder that a simulation fills.
 struct SimulationFiles {
   std::filesystem::path folder, experiment, truth;
+  std::filesystem::path marker_places;         ///< empty where they are not measured
   std::vector<TrialFiles> trials;              ///< one an entry of Simulation::chosen
   std::vector<std::filesystem::path> earlier;  ///< of an earlier simulation, to be removed
 

@@ -14,6 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kPlacesFile = "marker_places.csv";
+
 bool IsThere(const fs::path& file) {
   std::error_code error;
   return fs::exists(fs::symlink_status(file, error));
@@ -38,6 +40,7 @@ std::vector<fs::path> TrialFilesIn(const fs::path& experiment) {
 std::vector<fs::path> EarlierSimulation(const SimulationFiles& files, bool force) {
   if (!IsThere(files.truth)) return {};
   std::vector<fs::path> earlier = {files.truth};
+  if (IsThere(files.folder / kPlacesFile)) earlier.push_back(files.folder / kPlacesFile);
   if (!IsThere(files.experiment)) return earlier;
   earlier.push_back(files.experiment);
   try {
@@ -57,6 +60,7 @@ bool Contains(const std::vector<fs::path>& files, const fs::path& file) {
 
 std::vector<fs::path> SimulationFiles::all() const {
   std::vector<fs::path> files = {experiment, truth};
+  if (!marker_places.empty()) files.push_back(marker_places);
   for (const TrialFiles& trial : trials) {
     files.insert(files.end(), {trial.markers, trial.joints, trial.truth});
   }
@@ -83,6 +87,7 @@ SimulationFiles FilesOfSimulation(const Simulation& simulation, const fs::path& 
   files.folder = folder;
   files.experiment = folder / "experiment.yaml";
   files.truth = folder / "truth.yaml";
+  if (!simulation.marker_places.empty()) files.marker_places = folder / kPlacesFile;
   for (const std::size_t i : simulation.chosen) {
     TrialFiles trial = FilesOfTrial(simulation.experiment.trials[i], folder);
     trial.free_root = simulation.experiment.options.free_root && trial.support.empty();

@@ -112,9 +112,9 @@ class Compensator {
                             StandingFeet feet) noexcept;
 
   /// Of the last Forward: pose of a link in the root link's frame, and of the root link in the
-  /// frame of the first foot that stands (identity while the root link is held). Where several feet
-  /// stand, they are taken to stand as the nominal robot has them, and each counts by its share of
-  /// the weight.
+  /// frame of the first foot that stands (identity while the root link is held), by the leg between
+  /// the two. How other feet stand against it, the poses say: nothing is taken from the nominal
+  /// robot.
   Eigen::Isometry3d link_pose(int link) const noexcept;
   Eigen::Isometry3d root_pose() const noexcept;
 

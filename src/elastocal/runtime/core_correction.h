@@ -94,18 +94,14 @@ static inline void ec_place_feet(const ec_robot* robot, const ec_memory* memory,
 }
 
 /* Poses of all links in the root link's frame, with deflection, and of the root link on its feet
-   (ec_root_on_feet). `support`: bit f is set where foot f stands; 0: the root link is held.
+   (ec_root_on_first). `support`: bit f is set where foot f stands; 0: the root link is held.
    `torque` by joint as sensors report it (it balances the load), or null: statics. */
 static inline unsigned ec_forward(const ec_robot* robot, const double* q, const double* torque,
                                   unsigned support, ec_memory* memory, ec_pose* links,
                                   ec_pose* root) {
   unsigned status = ec_take(robot, q, torque, support, 0, memory);
   double gravity[3];
-  ec_pose placed[32];
   int i;
-  ec_move(robot, robot->nominal, memory->good_q, memory);
-  ec_walk(robot, robot->nominal, 0, memory, &status);
-  ec_place_feet(robot, memory, placed);
   ec_move(robot, robot->calibrated, memory->good_q, memory);
   ec_walk(robot, robot->calibrated, 0, memory, &status);
   ec_settle(robot, memory->good_q, memory->good_support, torque ? memory->good_torque : torque,
@@ -113,7 +109,7 @@ static inline unsigned ec_forward(const ec_robot* robot, const double* q, const 
   for (i = 0; i < robot->links; ++i) {
     ec_compose(&memory->body[robot->link[i].body], &robot->link[i].pose, &links[i]);
   }
-  ec_root_on_feet(robot, memory->good_support, placed, memory->sole, memory->share, root);
+  ec_root_on_first(robot, memory->good_support, memory->sole, root);
   return status;
 }
 
@@ -126,7 +122,7 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
                                   double* displacement) {
   unsigned status = ec_take(robot, q, torque, support, 0, memory);
   double gravity[3], turn[9], *start = memory->work_q;
-  ec_pose placed[32], straight[32], root, rigid_root;
+  ec_pose straight[32], root, rigid_root;
   int c, i, k;
   q = memory->good_q;
   if (status & EC_NOTHING_YET) {
@@ -134,19 +130,14 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
     for (i = 0; i < 6; ++i) displacement[i] = 0.0;
     return status;
   }
-  if (memory->good_support & (memory->good_support - 1U)) { /* more than one foot */
-    ec_move(robot, robot->nominal, q, memory);
-    ec_walk(robot, robot->nominal, 0, memory, &status);
-  }
-  ec_place_feet(robot, memory, placed); /* not used of one foot */
   ec_move(robot, robot->calibrated, q, memory);
   ec_walk(robot, robot->calibrated, 0, memory, &status);
   ec_place_feet(robot, memory, straight);
   ec_settle(robot, q, memory->good_support, torque ? memory->good_torque : torque, memory, gravity,
             &status);
   ec_tip_poses(robot, memory, memory->target);
-  ec_root_on_feet(robot, memory->good_support, placed, memory->sole, memory->share, &root);
-  ec_root_on_feet(robot, memory->good_support, placed, straight, memory->share, &rigid_root);
+  ec_root_on_first(robot, memory->good_support, memory->sole, &root);
+  ec_root_on_feet(robot, memory->good_support, memory->sole, straight, memory->share, &rigid_root);
   for (i = 0; i < 9; ++i) {
     turn[i] = ec_dot(&root.R[3 * (i / 3)], &rigid_root.R[3 * (i % 3)]);
   }

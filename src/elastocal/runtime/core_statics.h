@@ -343,9 +343,23 @@ static inline void ec_settle(const ec_robot* robot, const double* q, unsigned su
   ec_sole_poses(robot, 1, gravity, memory, status);
 }
 
-/* Pose of the root link on its feet, in the frame of the first foot that stands; a held root link
-   is its own reference. The feet stand where the nominal robot has them (`placed`, by foot), and
-   where they disagree each counts by its share of the weight. */
+/* Pose of the root link in the frame of the first foot that stands, by the leg between them; a held
+   root link is its own reference. Other feet that stand say nothing of it: how they stand against
+   the first one nothing tells but the same legs. A nominal robot at these positions has them
+   elsewhere, by as much as the legs are off (20 mm of TALOS), whatever the controller plays. */
+static inline void ec_root_on_first(const ec_robot* robot, unsigned support, const ec_pose* sole,
+                                    ec_pose* root) {
+  int f;
+  ec_identity(root);
+  for (f = 0; f < robot->feet; ++f) {
+    if (!(support >> f & 1U)) continue;
+    ec_invert(&sole[f], root);
+    return;
+  }
+}
+
+/* The same of a robot whose legs do not close on the feet as they stand (`placed`, by foot, in the
+   frame of any one link): each leg counts by its foot's share of the weight. */
 static inline void ec_root_on_feet(const ec_robot* robot, unsigned support, const ec_pose* placed,
                                    const ec_pose* sole, const double* share, ec_pose* root) {
   ec_pose first, back, by;

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/project/project.hpp"
+#include "elastocal/validation/common_parameters.hpp"
+
+namespace elastocal {
+
+/// Hands and feet whose last joint has a turn about its axis, or a place along it, that nothing has
+/// told (status unsupported), a sentence each: which frame that leaves open by how much, and which
+/// measurement would tell it.
+std::vector<std::string> DescribeOpenFrames(const Project& project,
+                                            const CalibrationEstimate& estimate);
+
+}  // namespace elastocal

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/planning/leave_room.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/expect_input_error.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kOneDeg = M_PI / 180.0;
+
+TEST(LeaveRoom, MovesTheLimitsOfTurningJointsAndThoseOfPostures) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const Project narrow = LeaveRoom(project, 3.0 * kOneDeg);
+  const auto joint = static_cast<std::size_t>(FindJoint(project.tree, "leg_left_2_joint"));
+  const JointLimits& before = project.tree.joints[joint].limits;
+  const JointLimits& after = narrow.tree.joints[joint].limits;
+  EXPECT_NEAR(after.lower - before.lower, 3.0 * kOneDeg, 1e-12);
+  EXPECT_NEAR(before.upper - after.upper, 3.0 * kOneDeg, 1e-12);
+  const int c = project.tree.joints[joint].coordinate;
+  const double inside = 0.02 * (before.upper - before.lower);  // as far as postures stay from them
+  EXPECT_NEAR(project.motion.lower[c] - before.lower, inside, 1e-12);
+  EXPECT_NEAR(narrow.motion.lower[c] - after.lower, inside, 1e-12);
+  EXPECT_NEAR(after.upper - narrow.motion.upper[c], inside, 1e-12);
+  EXPECT_EQ(LeaveRoom(project, 0.0).tree.joints[joint].limits.lower, before.lower);
+}
+
+// A joint of 20 degrees keeps 16 of them; one that slides keeps all.
+TEST(LeaveRoom, LeavesNineTenthsOfAShortRange) {
+  Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  for (Joint& joint : project.tree.joints) {
+    if (joint.type == JointType::kRevolute)
+      joint.limits.lower = -(joint.limits.upper = 10.0 * kOneDeg);
+  }
+  project.motion.rest.setZero();
+  project.motion.lower.setConstant(-10.0);
+  project.motion.upper.setConstant(10.0);
+  const Project narrow = LeaveRoom(project, 30.0 * kOneDeg);
+  for (std::size_t k = 0; k < project.tree.joints.size(); ++k) {
+    const Joint& joint = narrow.tree.joints[k];
+    if (joint.type == JointType::kPrismatic) {
+      EXPECT_EQ(joint.limits.upper, project.tree.joints[k].limits.upper);
+    } else if (!joint.mimic) {
+      EXPECT_NEAR(joint.limits.upper, 8.0 * kOneDeg, 1e-12);
+    }
+  }
+}
+
+TEST(LeaveRoom, APostureOfRestInTheRoomIsNamed) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  ExpectInputError([&] { LeaveRoom(project, 20.0 * kOneDeg); },
+                   {"project.yaml", "arm_left_2_joint", "12.00", "rest_deg"});
+}
+
+}  // namespace
+}  // namespace elastocal
