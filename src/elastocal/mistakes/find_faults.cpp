@@ -12,11 +12,13 @@
 #include "elastocal/calibration/loose_clusters.hpp"
 #include "elastocal/calibration/odd_postures.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/calibration/up_by_torques.hpp"
 #include "elastocal/calibration/up_check.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/mistakes/tried_correction.hpp"
 #include "elastocal/mistakes/up_by_loads.hpp"
 
 namespace elastocal {
@@ -214,6 +216,11 @@ std::vector<std::string> FindFaults(const Project& project, std::optional<std::u
                                     const Recording& recording, const ModelComparison& comparison) {
   std::vector<std::string> faults;
   if (const auto up = FindWrongUp(robot.model, recording)) faults.push_back(Describe(*up));
+  const Recording& measured = as_recorded.calibration;  // with sensors that contradict statics
+  if (const auto up =
+          FindUpByTorques(NominalModel(project, measured), measured, project.calibration.slip)) {
+    faults.push_back(Describe(*up));
+  }
   const std::string wrong_scales = DescribeWrongScales(as_recorded.trials);
   if (!wrong_scales.empty()) faults.push_back(wrong_scales);
   for (const RecordingMistake& mistake :
