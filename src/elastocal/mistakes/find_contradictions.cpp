@@ -14,6 +14,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/thinned_motions.hpp"
 #include "elastocal/validation/held_out.hpp"
 
 namespace elastocal {
@@ -317,8 +318,7 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
     return {exchange->Description(recording, held_out) +
             ". Correct the labels and calibrate again"};
   }
-  // Motions are sampled far more densely than postures are held.
-  const Recording thinned = EvenlyThinned(held_out, recording.posture_count());
+  const Recording thinned = WithThinnedMotions(held_out, recording.posture_count());
   Recording all = JoinTrials(recording, thinned);
   // Trials that contradict each other keep noise and outliers from coming to rest.
   CalibrationOptions roughly = project.calibration;

@@ -98,7 +98,13 @@ std::optional<GeneralFault> FindGeneralFault(const Project& project,
                                              Measurements as_recorded, const RecordedModel& robot,
                                              const Recording& recording,
                                              const CalibrationResult& result) {
-  GeneralFault general{{}, robot.model, robot.base, recording, result.kind, project.calibration};
+  GeneralFault general{{},
+                       robot.model,
+                       robot.base,
+                       recording,
+                       result.kind,
+                       project.calibration,
+                       as_recorded.validation};
   std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, project.calibration);
   if (!robot.knocks.empty()) {
     RecordedModel plain = MakeRecordedModel(project, seed, as_recorded, KnockSearch::kNone);

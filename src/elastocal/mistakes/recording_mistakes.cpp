@@ -333,12 +333,17 @@ std::vector<std::string> AcceptMistakes(const Project& project,
                                         Measurements& measured) {
   std::vector<std::string> undone;
   std::vector<std::string> names;  // of mistakes that the recording must show
+  std::vector<StatedCorrection> stated;
   for (const std::string& name : accepted) {
-    if (const auto stated = ParseStatedCorrection(name, project.tree)) {
-      undone.push_back(ApplyCorrection(*stated, project.tree, measured));
+    if (const auto one = ParseStatedCorrection(name, project.tree)) {
+      stated.push_back(*one);
     } else {
       names.push_back(name);
     }
+  }
+  for (const StatedCorrection& one : stated) {
+    undone.push_back(ApplyCorrection(one, project.tree, measured) +
+                     DescribeUnconfirmed(one, stated, measured));
   }
   if (names.empty()) return undone;
   std::set<std::string> told;
