@@ -321,10 +321,17 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
     }
     return suspected;
   };
+  double error = FitError(result, fitted, project.calibration);
+  // Where clusters were taken as two that were not knocked, a fit may explain nothing that explains
+  // much with each as one: a mistake must leave less than that.
+  const bool in_sets = fitted.marker_count() != measured.calibration.marker_count();
+  if (in_sets && !(error < MostLeft(project.tree))) {
+    error = std::min(error, refitting.Error(measured.calibration));
+  }
   return Explained(
       project.tree,
       FindMistakesBy(
-          project, measured.calibration, FitError(result, fitted, project.calibration),
+          project, measured.calibration, error,
           [&](const Recording& recording) { return refitting.Error(recording); }, signs));
 }
 
