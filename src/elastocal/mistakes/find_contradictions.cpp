@@ -258,6 +258,14 @@ std::string OrInThoseOfTheEstimate(const RecordingFault& fault, const Recording&
                              ", which the recording does not tell: measure it there again";
 }
 
+/// In a sine the acceleration is proportional to the position, and so is what inertia bends: at
+/// half a hertz, a joint that would swing at 5 Hz seems to have a gain of 1 % in such a trial.
+bool MayBeInertia(const RecordingFault& fault, const Recording& recording) {
+  constexpr double kMostByInertia = 0.02;
+  return fault.kind == FaultKind::kJointGain && fault.trial >= 0 &&
+         recording.trials[Size(fault.trial)].of_motion() && std::abs(fault.size) < kMostByInertia;
+}
+
 /// Whether held-out trials are suspiciously worse than those of the estimate, and by how much.
 Contrast ContrastOf(const Project& project, const Recording& recording,
                     const ModelComparison& comparison, const ErrorTable& held_out_table) {
@@ -330,8 +338,8 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   all.time_s.resize(recording.time_s.size() + thinned.time_s.size());
   all.time_s << recording.time_s, thinned.time_s;
   if (all.time_s.size() != all.posture_count()) all.time_s.resize(0);
-  const std::vector<RecordingFault> faults =
-      FindRecordingFaults(together, all, project.calibration);
+  std::vector<RecordingFault> faults = FindRecordingFaults(together, all, project.calibration);
+  std::erase_if(faults, [&](const RecordingFault& one) { return MayBeInertia(one, all); });
   if (!faults.empty()) {
     const GeneralFault general{
         faults.front(), robot.model, robot.base, all, comparison.largest_kind(), roughly};
