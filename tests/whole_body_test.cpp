@@ -249,6 +249,10 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   recording.torques.col(elbow) *= -1.0;
   only(recording, elbow, TorqueContradiction::kReversed);
   recording = clean;
+  Random random(7);
+  for (auto& torque : recording.torques.col(elbow)) torque = random.Normal(0.5);
+  only(recording, elbow, TorqueContradiction::kUnrelated);
+  recording = clean;
   recording.torques.col(knee) *= 1000.0;
   only(recording, knee, TorqueContradiction::kScaled);
   recording = clean;

@@ -14,9 +14,12 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeastSpread = 5.0;      // N.m or N: standard deviation of static torques ...
-constexpr double kLever = 0.02;           // ... and by how much the weight carried may be aside, m
-constexpr double kLeastReversed = 1.0;    // instead of 5 where sensors follow statics reversed
+constexpr double kLeastSpread = 5.0;     // N.m or N: standard deviation of static torques ...
+constexpr double kLever = 0.02;          // ... and by how much the weight carried may be aside, m
+constexpr double kLeastReversed = 1.0;   // instead of 5 where sensors follow statics reversed
+constexpr double kCertainSlopeSd = 0.1;  // of a sensor with less spread, in ...
+constexpr std::size_t kManyPairs = 10;   // ... so many postures
+constexpr double kNoSlope = 0.2;
 constexpr double kLeastBias = 10.0;       // N.m or N
 constexpr double kLeastBiasShare = 0.25;  // of the largest static torque
 constexpr double kLeastSlope = 0.5;
@@ -98,6 +101,27 @@ bool IsScaledAlone(const RobotTree& tree, const std::vector<std::optional<Torque
   return any;
 }
 
+/// Of a joint that carries too little for its slope to be judged as that of others: whether its
+/// torques follow those of statics all the same (nothing: they may), are reversed, or do not follow
+/// them at all. Their slope is told to a tenth by what they scatter about it.
+std::optional<TorqueContradiction> CertainContradiction(const Pairs& pairs) {
+  const auto count = static_cast<Eigen::Index>(pairs.expected.size());
+  if (pairs.expected.size() < kManyPairs) return std::nullopt;
+  const Eigen::Map<const Eigen::ArrayXd> expected(pairs.expected.data(), count);
+  const Eigen::Map<const Eigen::ArrayXd> measured(pairs.measured.data(), count);
+  const Eigen::ArrayXd x = expected - expected.mean();
+  const Eigen::ArrayXd y = measured - measured.mean();
+  const double squares = x.square().sum();
+  if (!(std::sqrt(x.square().mean()) >= kLever * pairs.weight) || squares == 0.0)
+    return std::nullopt;
+  const double slope = (x * y).sum() / squares;
+  const double scatter = (y - slope * x).square().sum() / static_cast<double>(count - 2);
+  if (!(scatter < kCertainSlopeSd * kCertainSlopeSd * squares)) return std::nullopt;
+  if (slope < -kLeastSlope) return TorqueContradiction::kReversed;
+  if (std::abs(slope) < kNoSlope) return TorqueContradiction::kUnrelated;
+  return std::nullopt;
+}
+
 std::optional<ContradictoryTorque> Judge(int joint, const Pairs& pairs, bool is_scaled_alone) {
   const auto count = static_cast<Eigen::Index>(pairs.expected.size());
   if (pairs.expected.size() < kLeastPairs) return std::nullopt;
@@ -116,6 +140,9 @@ std::optional<ContradictoryTorque> Judge(int joint, const Pairs& pairs, bool is_
       found.kind = TorqueContradiction::kScaled;
       return found;
     }
+  } else if (const auto kind = CertainContradiction(pairs)) {
+    found.kind = *kind;
+    return found;
   }
   const double largest = expected.abs().maxCoeff();
   if (std::abs(found.bias) < std::max({kLeastBias, kLeastBiasShare * largest, uncertain}))

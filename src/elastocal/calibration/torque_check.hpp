@@ -36,7 +36,9 @@ struct ContradictoryTorque {
 /// off by as much. Statics of the joints of a leg on one foot, of the others in any posture, at
 /// nominal geometry; the waist as its markers have it. Only sensors whose static torque varies by 5
 /// N.m (N) or more (sd; for a bias: any; 1 where they follow it reversed, with a correlation of
-/// 0.9) in five postures or more are judged; none where the robot description has no masses.
+/// 0.9) in five postures or more are judged; with less, in ten postures or more, only whether they
+/// are reversed or do not follow at all, where their scatter leaves the slope certain to a tenth.
+/// None where the robot description has no masses.
 std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& model,
                                                           const Recording& recording,
                                                           double slip_m);

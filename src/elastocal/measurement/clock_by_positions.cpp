@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "elastocal/math/interruption.hpp"
@@ -42,6 +43,19 @@ class Comparison {
         coordinates_(coordinates),
         trajectories_(trajectories),
         kinematics_(robot, markers, standing) {}
+
+  /// Root mean square of what cameras and log say otherwise, m; infinite without a moment.
+  double Left(const ClockFit& clock) {
+    TakeMoments(clock);
+    Eigen::MatrixXd predicted(std::ssize(time_s_), 3 * std::ssize(markers_));
+    for (Eigen::Index i = 0; i < predicted.rows(); ++i) {
+      predicted.row(i) = Predicted(robot_time_s_[Size(i)]).transpose();
+    }
+    const Eigen::ArrayXXd off = SeenFromStanding(predicted) - predicted;
+    const auto seen = static_cast<double>(off.size() - off.isNaN().count());
+    if (seen == 0.0) return std::numeric_limits<double>::infinity();
+    return std::sqrt(off.isNaN().select(0.0, off).square().sum() / seen);
+  }
 
   MarkerMotion At(const ClockFit& clock) {
     TakeMoments(clock);
@@ -298,6 +312,14 @@ ClockFit RefineClock(const MarkedRobot& robot, const std::vector<int>& markers,
   if (by_speed.state == ClockState::kAmbiguous) return Choose(comparison, by_speed, options);
   const auto refined = Refine(comparison, by_speed, options);
   return refined && refined->clock.sd_s < by_speed.sd_s ? refined->clock : by_speed;
+}
+
+double LeftByPositions(const MarkedRobot& robot, const std::vector<int>& markers,
+                       const std::vector<int>& standing, const SmoothedLog& log,
+                       const std::vector<int>& coordinates, const MarkerTrajectories& trajectories,
+                       const ClockFit& clock) {
+  Comparison comparison(robot, markers, standing, log, coordinates, trajectories);
+  return comparison.Left(clock);
 }
 
 }  // namespace elastocal

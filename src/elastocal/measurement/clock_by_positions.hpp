@@ -28,4 +28,12 @@ ClockFit RefineClock(const MarkedRobot& robot, const std::vector<int>& markers,
                      const std::vector<int>& coordinates, const MarkerTrajectories& trajectories,
                      const ClockFit& by_speed, const ClockOptions& options);
 
+/// How far the markers are from where the nominal robot has them by the log at this clock, root
+/// mean square of a coordinate, m: the cameras' frame is placed once for the whole trial. Arguments
+/// as for RefineClock; infinite where cameras and log share no moment.
+double LeftByPositions(const MarkedRobot& robot, const std::vector<int>& markers,
+                       const std::vector<int>& standing, const SmoothedLog& log,
+                       const std::vector<int>& coordinates, const MarkerTrajectories& trajectories,
+                       const ClockFit& clock);
+
 }  // namespace elastocal

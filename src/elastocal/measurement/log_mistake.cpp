@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "elastocal/measurement/clock_by_positions.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -14,8 +16,9 @@ constexpr double kLeastMotion = 0.05;  // rad or m: range of a joint that can be
 constexpr double kLeastPeak = 0.9;     // what is right correlates well
 constexpr double kFarBetter = 0.25;    // of what a correlation lacks to one is left
 constexpr double kLeastFrozen_s = 2.0;
-constexpr double kJumpSpreads_s = 1.2;  // the filter spreads the jump at either end
-constexpr double kPartFits = 0.9;       // correlation in a part of the log that is not wrong
+constexpr double kJumpSpreads_s = 1.2;       // the filter spreads the jump at either end
+constexpr double kPartFits = 0.9;            // correlation in a part of the log that is not wrong
+constexpr std::size_t kMostByPositions = 6;  // mistakes whose positions are compared
 
 /// Joints that move and are between the standing link and a marker.
 std::vector<int> MovingColumns(const MarkedRobot& robot, const std::vector<int>& markers,
@@ -115,28 +118,61 @@ double CorrelationOfPart(const LoggedSpeeds& logged, const Eigen::MatrixXd& meas
   return (a * b).sum() / std::sqrt(a.square().sum() * b.square().sum());
 }
 
+/// A mistake, and the clock by the log without it.
+struct Candidate {
+  LogMistake mistake;
+  ClockFit fit;
+};
+
+/// The one of the best correlation or, of several, with which positions leave least (`left_by`).
+template <typename LeftBy>
+std::optional<LogMistake> Choose(std::vector<Candidate> candidates, const LeftBy& left_by) {
+  if (candidates.empty()) return std::nullopt;
+  std::stable_sort(
+      candidates.begin(), candidates.end(),
+      [](const Candidate& a, const Candidate& b) { return a.mistake.peak > b.mistake.peak; });
+  if (candidates.size() > kMostByPositions) candidates.resize(kMostByPositions);
+  const Candidate* best = &candidates.front();
+  if (candidates.size() == 1) return best->mistake;
+  double least = left_by(*best);
+  for (const Candidate& one : candidates) {
+    const double left = left_by(one);
+    if (!(left < least)) continue;
+    least = left;
+    best = &one;
+  }
+  return best->mistake;
+}
+
 }  // namespace
 
 std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::vector<int>& markers,
                                          const std::vector<int>& standing, const SmoothedLog& log,
                                          const std::vector<int>& coordinates,
-                                         const Eigen::MatrixXd& speeds, double rate_hz,
+                                         const Eigen::MatrixXd& speeds,
+                                         const MarkerTrajectories& trajectories,
                                          const std::optional<double>& expected_lag_s,
                                          const ClockOptions& options, double peak) {
+  const double rate_hz = trajectories.rate_hz;
   const double least_peak = std::max(kLeastPeak, 1.0 - kFarBetter * (1.0 - peak));
-  std::optional<LogMistake> best;
+  std::vector<Candidate> candidates;
   const std::vector<int> columns = MovingColumns(robot, markers, log, coordinates);
   for (std::size_t a = 0; a < columns.size(); ++a) {
     for (std::size_t b = a; b < columns.size(); ++b) {
-      const SmoothedLog changed =
-          WithoutMistake(log, {.column = columns[a], .exchanged = columns[b]});
+      LogMistake mistake{.column = columns[a], .exchanged = columns[b]};
+      const SmoothedLog changed = WithoutMistake(log, mistake);
       const ClockFit fit = EstimateTrialClock(
           speeds, rate_hz, PredictSpeeds(robot, markers, standing, changed, coordinates, rate_hz),
           expected_lag_s, options);
       if (fit.state != ClockState::kReliable || fit.peak < least_peak) continue;
-      if (!best || fit.peak > best->peak) best = {columns[a], columns[b], fit.peak, 0.0, 0.0};
+      mistake.peak = fit.peak;
+      candidates.push_back({mistake, fit});
     }
   }
+  std::optional<LogMistake> best = Choose(std::move(candidates), [&](const Candidate& one) {
+    return LeftByPositions(robot, markers, standing, WithoutMistake(log, one.mistake), coordinates,
+                           trajectories, one.fit);
+  });
   const LoggedSpeeds logged = PredictSpeeds(robot, markers, standing, log, coordinates, rate_hz);
   for (const int column : columns) {
     const auto [still_from, still_to] = LongestStill(log, columns, column);

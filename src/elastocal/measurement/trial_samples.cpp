@@ -267,9 +267,10 @@ class TrialSampler {
   }
 
   std::string CauseOfBadClock(const Motion& seen) const {
-    const auto mistake = FindLogMistake(robot_, markers_, seen.links, smoothed_log_, coordinates_,
-                                        seen.speeds, trajectories_.rate_hz, options_.expected_lag_s,
-                                        ClockSettings(), result_.summary.clock.peak);
+    const auto mistake =
+        FindLogMistake(robot_, markers_, seen.links, smoothed_log_, coordinates_, seen.speeds,
+                       seen.relative ? *seen.relative : trajectories_, options_.expected_lag_s,
+                       ClockSettings(), result_.summary.clock.peak);
     if (mistake) return "; " + Describe(*mistake, log_.names);
     const double rate_hz = trajectories_.rate_hz;
     const auto means = TakeMeanSpeeds(

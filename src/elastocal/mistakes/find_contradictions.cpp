@@ -14,6 +14,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/thinned_motions.hpp"
 #include "elastocal/validation/held_out.hpp"
 
 namespace elastocal {
@@ -268,6 +269,14 @@ Recording AsUsed(const Recording& recording, const CalibrationResult& result) {
   return used;
 }
 
+/// In a sine the acceleration is proportional to the position, and so is what inertia bends: at
+/// half a hertz, a joint that would swing at 5 Hz seems to have a gain of 1 % in such a trial.
+bool MayBeInertia(const RecordingFault& fault, const Recording& recording) {
+  constexpr double kMostByInertia = 0.02;
+  return fault.kind == FaultKind::kJointGain && fault.trial >= 0 &&
+         recording.trials[Size(fault.trial)].of_motion() && std::abs(fault.size) < kMostByInertia;
+}
+
 /// Whether held-out trials are suspiciously worse than those of the estimate, and by how much.
 Contrast ContrastOf(const Project& project, const Recording& recording,
                     const ModelComparison& comparison, const ErrorTable& held_out_table) {
@@ -329,8 +338,7 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
     return {exchange->Description(recording, held_out) +
             ". Correct the labels and calibrate again"};
   }
-  // Motions are sampled far more densely than postures are held.
-  const Recording thinned = EvenlyThinned(held_out, recording.posture_count());
+  const Recording thinned = WithThinnedMotions(held_out, recording.posture_count());
   Recording all = JoinTrials(recording, thinned);
   // Trials that contradict each other keep noise and outliers from coming to rest.
   CalibrationOptions roughly = project.calibration;
@@ -342,8 +350,8 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   all.time_s.resize(recording.time_s.size() + thinned.time_s.size());
   all.time_s << recording.time_s, thinned.time_s;
   if (all.time_s.size() != all.posture_count()) all.time_s.resize(0);
-  const std::vector<RecordingFault> faults =
-      FindRecordingFaults(together, all, project.calibration);
+  std::vector<RecordingFault> faults = FindRecordingFaults(together, all, project.calibration);
+  std::erase_if(faults, [&](const RecordingFault& one) { return MayBeInertia(one, all); });
   if (!faults.empty()) {
     const GeneralFault general{
         faults.front(), robot.model, robot.base, all, comparison.largest_kind(), roughly};

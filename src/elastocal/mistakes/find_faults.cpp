@@ -13,11 +13,13 @@
 #include "elastocal/calibration/loose_clusters.hpp"
 #include "elastocal/calibration/odd_postures.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/calibration/up_by_torques.hpp"
 #include "elastocal/calibration/up_check.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/mistakes/tried_correction.hpp"
 #include "elastocal/mistakes/up_by_loads.hpp"
 
 namespace elastocal {
@@ -97,7 +99,13 @@ std::optional<GeneralFault> FindGeneralFault(const Project& project,
                                              Measurements as_recorded, const RecordedModel& robot,
                                              const Recording& recording,
                                              const CalibrationResult& result) {
-  GeneralFault general{{}, robot.model, robot.base, recording, result.kind, project.calibration};
+  GeneralFault general{{},
+                       robot.model,
+                       robot.base,
+                       recording,
+                       result.kind,
+                       project.calibration,
+                       as_recorded.validation};
   std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, project.calibration);
   if (!robot.knocks.empty()) {
     RecordedModel plain = MakeRecordedModel(project, seed, as_recorded, KnockSearch::kNone);
@@ -243,6 +251,11 @@ class FaultsInTurn {
   std::vector<std::string> OfWholeRecording() const {
     std::vector<std::string> faults;
     if (const auto up = FindWrongUp(robot_.model, recording_)) faults.push_back(Describe(*up));
+    const Recording& measured = as_recorded_.calibration;  // with sensors that contradict statics
+    if (const auto up = FindUpByTorques(NominalModel(project_, measured), measured,
+                                        project_.calibration.slip)) {
+      faults.push_back(Describe(*up));
+    }
     const std::string wrong_scales = DescribeWrongScales(as_recorded_.trials);
     if (!wrong_scales.empty()) faults.push_back(wrong_scales);
     for (const RecordingMistake& mistake :

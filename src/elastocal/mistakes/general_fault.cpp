@@ -16,6 +16,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/mistakes/clusters_beside.hpp"
+#include "elastocal/mistakes/placed_gains.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
@@ -60,6 +61,7 @@ class FaultExplanation {
     Collect(general.fault, true);
     if (faults_.size() > 1 && Drifts()) TryWithoutDrift();
     if (complete_ && faults_.front().linkage < 0) EstimateTogether();
+    if (complete_) faults_ = PlaceGains(faults_, Undone(), general_);
   }
 
   bool complete() const { return complete_; }

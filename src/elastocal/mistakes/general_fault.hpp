@@ -17,6 +17,7 @@ struct GeneralFault {
   Recording recording;
   ModelKind kind = ModelKind::kGeometric;
   CalibrationOptions options;
+  Recording held_out = {};  ///< trials for validation, by which gains are placed; may be empty
 };
 
 /// "arm_4_joint: its positions are 1.05 +- 0.01 times the true ones (--accept NAME corrects it)"

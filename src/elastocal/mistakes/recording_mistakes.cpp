@@ -321,10 +321,17 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
     }
     return suspected;
   };
+  double error = FitError(result, fitted, project.calibration);
+  // Where clusters were taken as two that were not knocked, a fit may explain nothing that explains
+  // much with each as one: a mistake must leave less than that.
+  const bool in_sets = fitted.marker_count() != measured.calibration.marker_count();
+  if (in_sets && !(error < MostLeft(project.tree))) {
+    error = std::min(error, refitting.Error(measured.calibration));
+  }
   return Explained(
       project.tree,
       FindMistakesBy(
-          project, measured.calibration, FitError(result, fitted, project.calibration),
+          project, measured.calibration, error,
           [&](const Recording& recording) { return refitting.Error(recording); }, signs));
 }
 
@@ -333,12 +340,17 @@ std::vector<std::string> AcceptMistakes(const Project& project,
                                         Measurements& measured) {
   std::vector<std::string> undone;
   std::vector<std::string> names;  // of mistakes that the recording must show
+  std::vector<StatedCorrection> stated;
   for (const std::string& name : accepted) {
-    if (const auto stated = ParseStatedCorrection(name, project.tree)) {
-      undone.push_back(ApplyCorrection(*stated, project.tree, measured));
+    if (const auto one = ParseStatedCorrection(name, project.tree)) {
+      stated.push_back(*one);
     } else {
       names.push_back(name);
     }
+  }
+  for (const StatedCorrection& one : stated) {
+    undone.push_back(ApplyCorrection(one, project.tree, measured) +
+                     DescribeUnconfirmed(one, stated, measured));
   }
   if (names.empty()) return undone;
   std::set<std::string> told;

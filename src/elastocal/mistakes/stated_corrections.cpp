@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -146,6 +147,24 @@ std::string InWords(const StatedCorrection& correction, const RobotTree& tree) {
                      where, from);
 }
 
+/// Names of the trials that move it.
+std::vector<std::string> TrialsMoving(const StatedCorrection& of, const Recording& recording) {
+  constexpr double kMovedWithin = 0.2;  // rad or m
+  std::vector<std::string> names;
+  for (int trial = 0; trial < std::ssize(recording.trials); ++trial) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      if (recording.trial[static_cast<std::size_t>(i)] != trial) continue;
+      least = std::min(least, recording.q(i, of.coordinate));
+      most = std::max(most, recording.q(i, of.coordinate));
+    }
+    if (most - least > kMovedWithin) {
+      names.push_back(recording.trials[static_cast<std::size_t>(trial)].name);
+    }
+  }
+  return names;
+}
+
 }  // namespace
 
 std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
@@ -276,6 +295,29 @@ std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree&
     }
   }
   return InWords(correction, tree);
+}
+
+std::string DescribeUnconfirmed(const StatedCorrection& correction,
+                                const std::vector<StatedCorrection>& all,
+                                const Measurements& measured) {
+  if (correction.kind == FaultKind::kCameraScale || correction.linkage >= 0) return "";
+  const std::vector<std::string> of_estimate = TrialsMoving(correction, measured.calibration);
+  const std::vector<std::string> held_out = TrialsMoving(correction, measured.validation);
+  const auto undone_in = [&](const std::string& trial) {
+    return std::any_of(all.begin(), all.end(), [&](const StatedCorrection& one) {
+      return one.kind == correction.kind && one.linkage < 0 &&
+             one.coordinate == correction.coordinate && (one.trial.empty() || one.trial == trial);
+    });
+  };
+  const bool unconfirmed = !of_estimate.empty() && !held_out.empty() &&
+                           std::none_of(of_estimate.begin(), of_estimate.end(), undone_in) &&
+                           std::all_of(held_out.begin(), held_out.end(), undone_in);
+  if (!unconfirmed) return "";
+  return fmt::format(
+      "; all trials for validation that move it are corrected so, and no error of this result "
+      "would "
+      "show that not they but {} were off by the opposite: if you do not know it, record one again",
+      fmt::join(of_estimate, ", "));
 }
 
 void RefuseAccepted(const std::string& name, const std::set<std::string>& shown) {

@@ -51,4 +51,12 @@ std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree&
 /// what the recording does show (`shown`).
 [[noreturn]] void RefuseAccepted(const std::string& name, const std::set<std::string>& shown);
 
+/// "; all trials for validation that move it are corrected ..." of an offset or gain of a joint
+/// that is undone in all trials for validation that move it and in none of those of the estimate
+/// that do: then no error shows which of the two are off. Else empty. `all`: everything that is
+/// undone.
+std::string DescribeUnconfirmed(const StatedCorrection& correction,
+                                const std::vector<StatedCorrection>& all,
+                                const Measurements& measured);
+
 }  // namespace elastocal

@@ -82,6 +82,16 @@ bool OnlyItExplains(const UpByLoads& found, double rigid, double calibrated, dou
          found.found < kLeftOfCalibrated * calibrated && found.found < kLikeNoise * noise;
 }
 
+/// Whether with that axis up nothing but the noise of the markers is left, and with the stated one,
+/// with all that was found, so much more that chance does not do it, of this many coordinates: of
+/// robots that hardly give way, gravity explains little, but nothing else is left.
+bool LeavesOnlyNoise(const UpByLoads& found, double calibrated, double coordinates, double noise) {
+  constexpr double kClearlyMore = 1.1, kLeastLogRatio = 20.0;
+  const double ratio = std::min(found.stated, calibrated) / found.found;
+  return found.found < noise && ratio > kClearlyMore &&
+         coordinates * std::log(ratio) > kLeastLogRatio;
+}
+
 }  // namespace
 
 std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::uint64_t> seed,
@@ -116,9 +126,12 @@ std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::
   }
   // What is wrong explains the recording: to leave less than another axis is not enough.
   const double noise = NoiseByDistances(robot.model, recording);
+  const auto coordinates =
+      static_cast<double>(recording.markers.size() - recording.markers.array().isNaN().count());
   const bool far_better = found.found < kLeftOfStated * found.stated;
   const bool explains = far_better ? found.found < kMostOfNoise * noise
-                                   : OnlyItExplains(found, rigid, calibrated, noise);
+                                   : OnlyItExplains(found, rigid, calibrated, noise) ||
+                                         LeavesOnlyNoise(found, calibrated, coordinates, noise);
   if (!explains) return std::nullopt;
   return found;
 }

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/mistakes/placed_gains.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elastocal/calibration/knocks.hpp"
+#include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/thinned_motions.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr int kUpdatesOfPlaced = 15;
+constexpr double kToldShare = 0.2;    // of the gain: standard deviation of what a trial shows
+constexpr double kLackedShare = 0.5;  // of the gain: a trial that shows less does not have it
+
+bool IsInAllTrials(const RecordingFault& fault) {
+  return fault.kind == FaultKind::kJointGain && fault.coordinate >= 0 && fault.linkage < 0 &&
+         fault.trial < 0;
+}
+
+}  // namespace
+
+std::vector<RecordingFault> PlaceGains(const std::vector<RecordingFault>& faults,
+                                       const Recording& undone, const GeneralFault& general) {
+  const bool told = !undone.trials.empty() && general.held_out.posture_count() > 0;
+  if (!told || std::none_of(faults.begin(), faults.end(), IsInAllTrials)) return faults;
+  Recording held_out = WithThinnedMotions(general.held_out, undone.posture_count());
+  AddUnseenMarkers(general.model, held_out);
+  const Recording all = JoinTrials(undone, held_out);
+  CalibrationOptions roughly = general.options;
+  roughly.outliers = OutlierPolicy::kKeep;
+  roughly.max_iterations = std::min(roughly.max_iterations, kUpdatesOfPlaced);
+  std::vector<RecordingFault> placed;
+  try {
+    const CalibrationResult fit =
+        Calibrate(general.model, all, general.base, general.kind, roughly);
+    for (const RecordingFault& fault : faults) {
+      std::vector<RecordingFault> there;
+      bool lacked = false;
+      if (IsInAllTrials(fault)) {
+        for (const int trial : TrialsThatMove(all, fault.coordinate)) {
+          RecordingFault one = fault;
+          one.trial = trial;
+          if (trial < std::ssize(undone.trials)) {
+            there.push_back(one);
+            continue;
+          }
+          const RecordingFault shown = MeasureFault(one, fit, all, general.options);
+          lacked = lacked || (shown.sd < kToldShare * std::abs(fault.size) &&
+                              std::abs(shown.size) < kLackedShare * std::abs(fault.size));
+        }
+      }
+      if (!lacked || there.empty()) there = {fault};
+      placed.insert(placed.end(), there.begin(), there.end());
+    }
+  } catch (const InputError&) {  // nothing is told
+    return faults;
+  }
+  return placed;
+}
+
+}  // namespace elastocal
