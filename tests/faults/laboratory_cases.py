@@ -341,6 +341,22 @@ def clock_faults(lab, draw):
                lambda r, t=trial: r.change_log([t], lose_rows(0.05, 0, draw)))
 
 
+def marker_faults(lab, draw):
+    """Labels of two markers of any cluster, or of two clusters of one trial, the distances of which may be alike."""
+    shown = [(c, t) for c in lab.clusters if lab.clusters[c] > 1 for t in lab.showing(c)]
+    for (cluster, trial), begin in zip(draw.sample(shown, min(6, len(shown))), (0.0, 0.5, 0.0, 0.4, 0.0, 0.6)):
+        a, b = draw.sample(lab.markers(cluster), 2)
+        yield ("labels of markers", f"labels of {a} and {b} exchanged from {begin} of {trial} on", (a, b, "exchanged"),
+               lambda r, x=a, y=b, t=trial, e=begin: r.change_markers([t], swap_labels([x], [y], e, 1.0)))
+    for cluster, trial in draw.sample(shown, min(3, len(shown))):
+        others = [c for c, t in shown if t == trial and c != cluster]
+        if not others:
+            continue
+        a, b = draw.choice(lab.markers(cluster)), draw.choice(lab.markers(draw.choice(others)))
+        yield ("labels of markers", f"labels of {a} and {b} exchanged in {trial}", (a, b, "exchanged"),
+               lambda r, x=a, y=b, t=trial: r.change_markers([t], swap_labels([x], [y])))
+
+
 def all_faults(lab, draw):
     return [case for family in (joint_faults, camera_faults, declared_faults, torque_faults,
-                                clock_faults) for case in family(lab, draw)]
+                                clock_faults, marker_faults) for case in family(lab, draw)]

@@ -101,9 +101,8 @@ std::vector<MarkerMeasurement> ReadMarkerPlaces(const std::filesystem::path& fil
       }
     }
     Eigen::Vector3d place;
-    for (const int axis : {0, 1, 2}) {
-      place[axis] = BoundedCell(table, columns[static_cast<std::size_t>(kX + axis)],
-                                "marker places x_mm, y_mm, z_mm");
+    for (const PlaceColumn column : {kX, kY, kZ}) {
+      place[column - kX] = BoundedCell(table, columns[column], "marker places x_mm, y_mm, z_mm");
     }
     const Transform T = FromNamedLink(table, columns[kLink], marker, project);
     places.push_back(
