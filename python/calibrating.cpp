@@ -48,6 +48,7 @@ struct CalibrateArguments {
   ZeroOffsets zero_offsets;
   Path prior;
   double days;
+  Path marker_places;
   Names accept;
   StepProgress progress;
 };
@@ -68,6 +69,7 @@ std::vector<std::string> CommandWords(const Project& project, const Paths& files
     add("--prior", given.prior.string());
     add("--days", FormatNumber(given.days));
   }
+  if (!given.marker_places.empty()) add("--marker-places", given.marker_places.string());
   for (const std::string& mistake : given.accept) add("--accept", mistake);
   return words;
 }
@@ -78,6 +80,7 @@ RunRecord RecordOf(const Project& project, const Paths& files, const CalibrateAr
     const CalibrationFiles earlier = FindCalibrationFiles(given.prior);
     inputs.insert(inputs.end(), {earlier.calibration, earlier.covariance});
   }
+  if (!given.marker_places.empty()) inputs.push_back(given.marker_places);
   std::error_code unknown;  // a folder that was removed
   return {.command = "calibrate",
           .command_line = {},
@@ -103,6 +106,7 @@ PyCalibration CalibrateMarkers(const Project& project, const Paths& files,
                            .accept = given.accept,
                            .prior = given.prior,
                            .days = given.days,
+                           .marker_places = given.marker_places,
                            .progress = given.progress});
   auto texts = MakeCalibrationFiles(project, run);
   const bool judged_on_fit = run.deployment.judged_on == "the fit";
@@ -121,6 +125,8 @@ PyCalibration CalibrateMarkers(const Project& project, const Paths& files,
 PyCalibration CalibrateInstruments(const Project& project, const Paths& files,
                                    const CalibrateArguments& given) {
   Expect(given.fold_by == "posture", "fold_by", "a fold leaves out postures");
+  Expect(given.marker_places.empty(), "marker_places",
+         "mounting_sd_mm of an instrument says how well its place is known");
   ContactRunOptions options{.folds = given.folds,
                             .threads = given.threads,
                             .zero_offsets = given.zero_offsets,
@@ -142,8 +148,8 @@ PyCalibration CalibrateFiles(const ProjectOrFile& project_or_file, const py::obj
                              std::optional<int> folds, const std::string& fold_by,
                              std::optional<std::uint64_t> seed, int threads,
                              const std::string& zero_offsets, const Path& prior,
-                             std::optional<double> days, const Names& accept,
-                             const StepProgress& progress) {
+                             std::optional<double> days, const Path& marker_places,
+                             const Names& accept, const StepProgress& progress) {
   const Project& project = project_or_file.project;
   ExpectWithin("threads", threads, 1, 64);
   if (folds) ExpectWithin("folds", *folds, 0, 100000);
@@ -161,6 +167,7 @@ PyCalibration CalibrateFiles(const ProjectOrFile& project_or_file, const py::obj
                          {{"origin", ZeroOffsets::kOrigin}, {"encoder", ZeroOffsets::kEncoder}}),
       prior,
       days.value_or(1.0),
+      marker_places,
       accept,
       progress};
   return Unlocked([&] {
@@ -326,13 +333,14 @@ void AddCalibrating(py::module_& module) {
   module.def(
       "calibrate", CalibrateFiles, "project"_a, "recordings"_a = py::none(), py::kw_only(),
       "folds"_a = std::nullopt, "fold_by"_a = "posture", "seed"_a = std::nullopt, "threads"_a = 1,
-      "zero_offsets"_a = "origin", "prior"_a = "", "days"_a = std::nullopt, "accept"_a = Names(),
-      "progress"_a = StepProgress(),
+      "zero_offsets"_a = "origin", "prior"_a = "", "days"_a = std::nullopt, "marker_places"_a = "",
+      "accept"_a = Names(), "progress"_a = StepProgress(),
       "Calibrates from a posture table or from recording folders (a path or several), like the "
       "command of that name; with contact or instruments, from tables of observations. folds: of "
       "the cross-validation, 0 for none; None: ten for a table. fold_by: what a fold leaves out, "
       "'posture', 'trial' or 'session'. prior: the folder of an earlier calibration, `days` ago "
       "(None: one). "
+      "marker_places: a table of where markers are on their links, as measured there. "
       "accept: mistakes of the recording to undo. progress: called with (step, done, total).");
   module.def(
       "validate", Validate, "project"_a, "calibration"_a, "recording"_a = py::none(), py::kw_only(),

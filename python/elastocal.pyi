@@ -207,13 +207,14 @@ def calibrate(
     zero_offsets: str = "origin",
     prior: _Path = "",
     days: float | None = None,
+    marker_places: _Path = "",
     accept: Sequence[str] = ...,
     progress: Optional[Callable[[str, int, int], None]] = None,
 ) -> Calibration:
     """Calibrates from a posture table or from recording folders (a path or several), like the command of that name;
     with contact or instruments, from tables of observations. folds: of the cross-validation, 0 for none; None: ten
     for a table. fold_by: what a fold leaves out, 'posture', 'trial' or 'session'. prior: the folder of an earlier
-    calibration, `days` ago (None: one). accept: mistakes of the recording to undo. progress: called with (step, done, total)."""
+    calibration, `days` ago (None: one). marker_places: a table of where markers are on their links, as measured there. accept: mistakes of the recording to undo. progress: called with (step, done, total)."""
 def validate(
     project: Union[Project, _Path],
     calibration: _Path,

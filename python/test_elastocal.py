@@ -84,6 +84,19 @@ class LeftArm(unittest.TestCase):
         self.assertFalse(unchanged["changed"])
         self.assertEqual(unchanged["moved"], [])
 
+    def test_measured_marker_places_are_known(self):
+        def place(found):
+            of = {p["name"]: p for p in found.summary["parameters"]}
+            return [of[f"marker.LGRIPPER.{axis}"] for axis in "xyz"]
+        table = self.folder / "places.csv"
+        table.write_text("marker,x_mm,y_mm,z_mm,sd_mm\nLGRIPPER,60,10,-70,0.5\n")
+        known = elastocal.calibrate(self.project, TABLE, folds=0, marker_places=table)
+        self.assertTrue(all(p["sd"] < 1e-3 for p in place(known)))
+        self.assertTrue(any(p["sd"] > 1e-3 for p in place(self.found)))
+        with self.assertRaisesRegex(elastocal.InputError, "places.csv:2.*LGRIPPPER"):
+            table.write_text("marker,x_mm,y_mm,z_mm,sd_mm\nLGRIPPPER,60,10,-70,0.5\n")
+            elastocal.calibrate(self.project, TABLE, marker_places=table)
+
     def test_runtime(self):
         nominal = elastocal.Runtime(self.folder / "cli", ARM, "nominal")
         real = elastocal.Runtime(self.folder / "cli", self.project)  # as by its file

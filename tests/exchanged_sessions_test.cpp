@@ -108,12 +108,21 @@ TEST_F(ExchangedSessions, ASingleRowIsLeftOutWhereNoiseDoesNotHideIt) {
 // Neither noise nor touches in the air are rows of another session.
 TEST_F(ExchangedSessions, AreNoneInSoundTables) {
   EXPECT_TRUE(FindExchangedSessions(model_, sound_).empty());
-  Random random(3);
-  ObservedValues truth = RandomTruth(model_, 2, random);
-  const auto found = [&](const std::vector<double>& above) {
-    Observations air = SimulateTouches(model_, truth, 48, 2, {1e-3, 1e-3, 1e-3}, random, above);
-    for (std::size_t e = 0; e < air.effects.size(); ++e) air.effects[e].name = "ab"[e / 2];
+  const auto others = [&](Observations air) {
+    for (std::size_t e = 0; e < air.effects.size(); ++e) air.effects[e].name = "abc"[e / 2];
     return FindExchangedSessions(model_, air).size();
+  };
+  {
+    Random random(3);
+    const ObservedValues truth = RandomTruth(model_, 3, random);
+    std::vector<double> above(48, 0.0);
+    for (const std::size_t i : {4u, 9u, 20u, 31u}) above[i] = random.Uniform(5e-3, 40e-3);
+    EXPECT_EQ(others(SimulateTouches(model_, truth, 48, 3, {2e-3, 1e-3, 1e-3}, random, above)), 0u);
+  }
+  Random random(3);
+  const ObservedValues truth = RandomTruth(model_, 2, random);
+  const auto found = [&](const std::vector<double>& above) {
+    return others(SimulateTouches(model_, truth, 48, 2, {1e-3, 1e-3, 1e-3}, random, above));
   };
   std::vector<double> above(48, 0.0);
   for (const std::size_t i : {4u, 9u, 20u, 31u}) above[i] = random.Uniform(5e-3, 40e-3);

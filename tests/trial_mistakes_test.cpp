@@ -19,6 +19,15 @@ namespace {
 
 class TrialMistakes : public testing::Test {
  protected:
+  /// 40 postures of a robot with these errors, as one trial.
+  Recording AsTrial(const ErrorModel& model, const Eigen::VectorXd& truth, const std::string& name,
+                    TrialKind kind, std::uint64_t seed) const {
+    Recording recording = MakeSyntheticRecording(model, truth, {.postures = 40, .seed = seed});
+    recording.trials = {{name, kind, {project_.chains.front().name}}};
+    recording.trial.assign(40, 0);
+    return recording;
+  }
+
   Project project_ = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
 };
 
@@ -29,10 +38,7 @@ TEST_F(TrialMistakes, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
   const BaseParameters base = FindBaseParameters(model, project_.identifiability);
   const Eigen::VectorXd truth = DrawErrors(model, base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
   const auto as_trial = [&](const std::string& name, TrialKind kind, std::uint64_t seed) {
-    Recording recording = MakeSyntheticRecording(model, truth, {.postures = 40, .seed = seed});
-    recording.trials = {{name, kind, {project_.chains.front().name}}};
-    recording.trial.assign(40, 0);
-    return recording;
+    return AsTrial(model, truth, name, kind, seed);
   };
   const auto estimate = [&](const Recording& recording) {
     return CompareModels(Calibrate(model, recording, base, ModelKind::kGeometric, {}), model,
@@ -115,10 +121,7 @@ TEST_F(TrialMistakes, LabelsExchangedInOneOfTwoTrialsAreNamedAndContradictHeldOu
   const BaseParameters base = FindBaseParameters(model, project_.identifiability);
   const Eigen::VectorXd truth = DrawErrors(model, base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
   const auto trial = [&](const std::string& name, TrialKind kind, std::uint64_t seed) {
-    Recording recording = MakeSyntheticRecording(model, truth, {.postures = 40, .seed = seed});
-    recording.trials = {{name, kind, {project_.chains.front().name}}};
-    recording.trial.assign(40, 0);
-    return recording;
+    return AsTrial(model, truth, name, kind, seed);
   };
   const std::vector<int>& markers = project_.clusters.back().markers;
   Recording wrong = trial("wrong", TrialKind::kCalibration, 2);
@@ -155,10 +158,7 @@ TEST_F(TrialMistakes, AFaultBesideAKnockIsNamedByTheHeldOutTrial) {
   const Eigen::VectorXd truth =
       DrawErrors(robot.model, robot.base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
   const auto as_trial = [&](const std::string& name, TrialKind kind, std::uint64_t seed) {
-    Recording trial = MakeSyntheticRecording(robot.model, truth, {.postures = 40, .seed = seed});
-    trial.trials = {{name, kind, {project_.chains.front().name}}};
-    trial.trial.assign(40, 0);
-    return trial;
+    return AsTrial(robot.model, truth, name, kind, seed);
   };
   Recording recording = as_trial("swing", TrialKind::kCalibration, 1);
   Recording held_out = as_trial("check", TrialKind::kRandom, 2);
@@ -207,11 +207,8 @@ TEST_F(TrialMistakes, OfCorrectionsWithoutWhichNoRobotFitsTheBestIsNamed) {
 TEST_F(TrialMistakes, ASignIsUndoneInAllTrialsThatDoNotContradict) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
   const auto trial = [&](const std::string& name, std::uint64_t seed) {
-    Recording recording = MakeSyntheticRecording(
-        model, Eigen::VectorXd::Zero(model.parameter_count()), {.postures = 40, .seed = seed});
-    recording.trials = {{name, TrialKind::kCalibration, {project_.chains.front().name}}};
-    recording.trial.assign(40, 0);
-    return recording;
+    return AsTrial(model, Eigen::VectorXd::Zero(model.parameter_count()), name,
+                   TrialKind::kCalibration, seed);
   };
   Recording still = trial("still", 2);
   still.q.col(2).setConstant(0.01);
@@ -258,11 +255,7 @@ TEST_F(TrialMistakes, MarkersOfTheOppositeHandAreNamed) {
 TEST_F(TrialMistakes, MistakesAreUndoneOnRequest) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
   const auto as_trial = [&](TrialKind kind, std::uint64_t seed) {
-    Recording recording = MakeSyntheticRecording(
-        model, Eigen::VectorXd::Zero(model.parameter_count()), {.postures = 40, .seed = seed});
-    recording.trials = {{"swing", kind, {project_.chains.front().name}}};
-    recording.trial.assign(40, 0);
-    return recording;
+    return AsTrial(model, Eigen::VectorXd::Zero(model.parameter_count()), "swing", kind, seed);
   };
   Measurements measured;
   measured.calibration = as_trial(TrialKind::kCalibration, 1);

@@ -161,6 +161,7 @@ def strange_places(tries, base):
         "compare": lambda p: ["compare", base.out, p],
         "check": lambda p: ["check", base.project, "--recording", base.table, "--calibration", p],
         "prior": lambda p: calibrate(base.project, base.table, "--prior", p, *QUICK),
+        "marker places": lambda p: calibrate(base.project, base.table, "--marker-places", p, *QUICK),
         "after": lambda p: ["design", base.design, "--after", p, "-o", base.root / "after.yaml"],
         "report": lambda p: ["report", p],
         "earlier": lambda p: ["report", base.out, "-o", base.root / "page.html", "--earlier", p],
@@ -343,6 +344,11 @@ def all_tries(base, seed):
                    text.split(":")[0])
     any_files(tries, "simulation settings", "settings.yaml", b"marker_noise_mm: 0.1\n", settings)
     yaml_keys(tries, "simulation settings", "settings.yaml", base.settings, settings, 0.3)
+    places = lambda path: ["calibrate", base.project, "--recording", base.table, "--marker-places", path, *QUICK]
+    measured = (b"marker,x_mm,y_mm,z_mm,sd_mm,link\nTOOL_1,25.2,44.9,20.1,0.5,\nTOOL_2,-25,-50.3,35.2,0.5,tool\n"
+                b"TOOL_3,12.1,60.2,39.8,0.5,\nWRIST,35.1,40,45.2,0.5,\n")
+    any_files(tries, "marker places", "places.csv", measured, places)
+    table_cells(tries, "marker places", "places.csv", measured, ",", places)
     urdfs(tries, base)
     results(tries, base)
     strange_places(tries, base)

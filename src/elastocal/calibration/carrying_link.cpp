@@ -21,11 +21,11 @@ constexpr std::size_t kFewestTelling = 8;
 /// Positions of one marker in the frame of one link, m.
 using PositionsOnLink = std::vector<Eigen::Vector3d>;
 
-double SquaredScatter(const PositionsOnLink& track) {
+double SquaredScatter(const PositionsOnLink& positions) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& p : track) mean += p / static_cast<double>(track.size());
+  for (const Eigen::Vector3d& p : positions) mean += p / static_cast<double>(positions.size());
   double squares = 0.0;
-  for (const Eigen::Vector3d& p : track) squares += (p - mean).squaredNorm();
+  for (const Eigen::Vector3d& p : positions) squares += (p - mean).squaredNorm();
   return squares;
 }
 
@@ -42,39 +42,34 @@ class NominalLinks {
   /// rms distance of a cluster's markers from their mean positions on each link, m; empty where too
   /// few postures tell.
   Eigen::ArrayXd ScatterOf(const std::vector<int>& markers) const {
-    if (postures_.empty()) return {};
-    const std::size_t count = links_.front().size();
-    Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(count));
+    std::vector<std::optional<Transform>> roots;
+    for (const NominalPosture& nominal : postures_) {
+      roots.push_back(PlaceRoot(recording_, nominal, markers));
+    }
+    Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(postures_.empty() ? 0 : std::ssize(links_[0]));
     std::size_t seen = 0, most = 0;
     for (const int m : markers) {
-      const std::vector<PositionsOnLink> tracks = TracksOf(m, markers);
-      for (std::size_t b = 0; b < count; ++b) {
-        squares[static_cast<Eigen::Index>(b)] += SquaredScatter(tracks[b]);
+      std::vector<std::size_t> postures;
+      for (std::size_t i = 0; i < roots.size(); ++i) {
+        if (roots[i] && Seen(recording_, postures_[i].posture, m)) postures.push_back(i);
       }
-      seen += tracks.front().size();
-      most = std::max(most, tracks.front().size());
+      for (Eigen::Index link = 0; link < squares.size(); ++link) {
+        PositionsOnLink positions;
+        for (const std::size_t i : postures) {
+          const Transform T_ref_link = *roots[i] * links_[i][Size(link)];
+          positions.push_back(T_ref_link.inverse() *
+                              MarkerPosition(recording_, postures_[i].posture, m));
+        }
+        squares[link] += SquaredScatter(positions);
+      }
+      seen += postures.size();
+      most = std::max(most, postures.size());
     }
     if (most < kFewestTelling) return {};
     return (squares / static_cast<double>(seen)).sqrt();
   }
 
  private:
-  /// Of a marker, by link.
-  std::vector<PositionsOnLink> TracksOf(int marker, const std::vector<int>& cluster) const {
-    std::vector<PositionsOnLink> tracks(links_.front().size());
-    for (std::size_t i = 0; i < postures_.size(); ++i) {
-      if (!Seen(recording_, postures_[i].posture, marker)) continue;
-      const auto T_ref_root = PlaceRoot(recording_, postures_[i], cluster);
-      if (!T_ref_root) continue;
-      const Eigen::Vector3d in_root =
-          T_ref_root->inverse() * MarkerPosition(recording_, postures_[i].posture, marker);
-      for (std::size_t b = 0; b < tracks.size(); ++b) {
-        tracks[b].push_back(links_[i][b].inverse() * in_root);
-      }
-    }
-    return tracks;
-  }
-
   const Recording& recording_;
   std::vector<NominalPosture> postures_;
   std::vector<std::vector<Transform>> links_;  // by posture and link

@@ -88,7 +88,7 @@ double FactorOf(const RecordingFault& fault, const Recording& recording, int pos
   return fault.kind == FaultKind::kJointGain ? recording.q(posture, fault.coordinate) : 1.0;
 }
 
-std::vector<int> TrialsThatMove(const Recording& recording, int coordinate) {
+std::vector<int> AllTrialsThatMove(const Recording& recording, int coordinate) {
   constexpr double kMoved = 0.2;  // rad or m
   std::vector<int> moving;
   for (int trial = 0; trial < static_cast<int>(recording.trials.size()); ++trial) {
@@ -100,6 +100,11 @@ std::vector<int> TrialsThatMove(const Recording& recording, int coordinate) {
     }
     if (most - least > kMoved) moving.push_back(trial);
   }
+  return moving;
+}
+
+std::vector<int> TrialsThatMove(const Recording& recording, int coordinate) {
+  std::vector<int> moving = AllTrialsThatMove(recording, coordinate);
   if (moving.size() < 2) moving.clear();
   return moving;
 }

@@ -59,8 +59,10 @@ bool IsCertain(const RecordingFault& fault);
 /// in motions 0.
 Eigen::MatrixXd MovesOf(const Recording& recording);
 
-/// Trials that move a joint by 0.2 rad or m and more; none if there is only one: a gain of its
-/// positions there is one in all.
+/// Trials that move a joint by 0.2 rad or m and more.
+std::vector<int> AllTrialsThatMove(const Recording& recording, int coordinate);
+
+/// The same; none if there is only one: a gain of its positions there is one in all.
 std::vector<int> TrialsThatMove(const Recording& recording, int coordinate);
 
 /// Whether it is in the space that the cameras measure, the same in all postures.

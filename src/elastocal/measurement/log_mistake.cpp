@@ -126,7 +126,8 @@ struct Candidate {
 
 /// The one of the best correlation or, of several, with which positions leave least (`left_by`).
 template <typename LeftBy>
-std::optional<LogMistake> Choose(std::vector<Candidate> candidates, const LeftBy& left_by) {
+std::optional<LogMistake> BestByPositions(std::vector<Candidate> candidates,
+                                          const LeftBy& left_by) {
   if (candidates.empty()) return std::nullopt;
   std::stable_sort(
       candidates.begin(), candidates.end(),
@@ -169,10 +170,11 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
       candidates.push_back({mistake, fit});
     }
   }
-  std::optional<LogMistake> best = Choose(std::move(candidates), [&](const Candidate& one) {
-    return LeftByPositions(robot, markers, standing, WithoutMistake(log, one.mistake), coordinates,
-                           trajectories, one.fit);
-  });
+  std::optional<LogMistake> best =
+      BestByPositions(std::move(candidates), [&](const Candidate& one) {
+        return LeftByPositions(robot, markers, standing, WithoutMistake(log, one.mistake),
+                               coordinates, trajectories, one.fit);
+      });
   const LoggedSpeeds logged = PredictSpeeds(robot, markers, standing, log, coordinates, rate_hz);
   for (const int column : columns) {
     const auto [still_from, still_to] = LongestStill(log, columns, column);

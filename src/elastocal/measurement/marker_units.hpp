@@ -26,9 +26,8 @@ struct OtherUnit {
 /// its distances to at least two others of its link are 100 mm and more off those of `robot`, by
 /// the median, and 30 mm at most, a tenth of it, once its coordinates are multiplied by 10, 100,
 /// 1000, 25.4 or divided by one of these. All are in another unit where one of these factors
-/// explains four in five of the distances of markers on one link (three or more of 30 mm or more)
-/// within 30
-/// %.
+/// explains, within 30 %, four in five of the distances of markers on one link (of which there are
+/// three or more, of 30 mm or more).
 std::optional<OtherUnit> FindOtherUnit(const Eigen::MatrixXd& positions,
                                        const std::vector<std::string>& names,
                                        const std::vector<Marker>& robot);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/robot/linkage.hpp"
 #include "elastocal/robot/move_motors.hpp"
@@ -147,21 +147,9 @@ std::string InWords(const StatedCorrection& correction, const RobotTree& tree) {
                      where, from);
 }
 
-/// Names of the trials that move it.
-std::vector<std::string> TrialsMoving(const StatedCorrection& of, const Recording& recording) {
-  constexpr double kMovedWithin = 0.2;  // rad or m
+std::vector<std::string> NamesOfTrials(const std::vector<int>& trials, const Recording& recording) {
   std::vector<std::string> names;
-  for (int trial = 0; trial < std::ssize(recording.trials); ++trial) {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (int i = 0; i < recording.posture_count(); ++i) {
-      if (recording.trial[static_cast<std::size_t>(i)] != trial) continue;
-      least = std::min(least, recording.q(i, of.coordinate));
-      most = std::max(most, recording.q(i, of.coordinate));
-    }
-    if (most - least > kMovedWithin) {
-      names.push_back(recording.trials[static_cast<std::size_t>(trial)].name);
-    }
-  }
+  for (const int trial : trials) names.push_back(recording.trials[Size(trial)].name);
   return names;
 }
 
@@ -301,8 +289,10 @@ std::string DescribeUnconfirmed(const StatedCorrection& correction,
                                 const std::vector<StatedCorrection>& all,
                                 const Measurements& measured) {
   if (correction.kind == FaultKind::kCameraScale || correction.linkage >= 0) return "";
-  const std::vector<std::string> of_estimate = TrialsMoving(correction, measured.calibration);
-  const std::vector<std::string> held_out = TrialsMoving(correction, measured.validation);
+  const std::vector<std::string> of_estimate = NamesOfTrials(
+      AllTrialsThatMove(measured.calibration, correction.coordinate), measured.calibration);
+  const std::vector<std::string> held_out = NamesOfTrials(
+      AllTrialsThatMove(measured.validation, correction.coordinate), measured.validation);
   const auto undone_in = [&](const std::string& trial) {
     return std::any_of(all.begin(), all.end(), [&](const StatedCorrection& one) {
       return one.kind == correction.kind && one.linkage < 0 &&
@@ -315,8 +305,8 @@ std::string DescribeUnconfirmed(const StatedCorrection& correction,
   if (!unconfirmed) return "";
   return fmt::format(
       "; all trials for validation that move it are corrected so, and no error of this result "
-      "would "
-      "show that not they but {} were off by the opposite: if you do not know it, record one again",
+      "would show that not they but {} were off by the opposite: if you do not know it, record one "
+      "again",
       fmt::join(of_estimate, ", "));
 }
 

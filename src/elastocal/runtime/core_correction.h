@@ -85,7 +85,62 @@ static inline void ec_reset(const ec_robot* robot, ec_memory* memory) {
   ec_forget(memory);
 }
 
-/* Where the nominal robot at the good positions has its feet: from `body` after a nominal walk. */
+/* Pose of the root link in the frame of the first foot that stands, by the leg between them; a held
+   root link is its own reference. Other feet that stand say nothing of it: how they stand against
+   the first one nothing tells but the same legs. A nominal robot at these positions has them
+   elsewhere, by as much as the legs are off (20 mm of TALOS), whatever the controller plays. */
+static inline void ec_root_on_first(const ec_robot* robot, unsigned support, const ec_pose* sole,
+                                    ec_pose* root) {
+  int f;
+  ec_identity(root);
+  for (f = 0; f < robot->feet; ++f) {
+    if (!(support >> f & 1U)) continue;
+    ec_invert(&sole[f], root);
+    return;
+  }
+}
+
+/* The same of a robot whose legs do not close on the feet as they stand (`placed`, by foot, in the
+   frame of any one link): each leg counts by its foot's share of the weight. */
+static inline void ec_root_on_feet(const ec_robot* robot, unsigned support, const ec_pose* placed,
+                                   const ec_pose* sole, const double* share, ec_pose* root) {
+  ec_pose first, back, by;
+  double twist[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, R[9], v[3];
+  int f, i, begun = 0;
+  ec_identity(root);
+  for (f = 0; f < robot->feet; ++f) {
+    if (!(support >> f & 1U)) continue;
+    ec_invert(&sole[f], &by);
+    if (!begun) {
+      ec_invert(&placed[f], &first);
+      *root = by;
+      begun = 1;
+      continue;
+    }
+    ec_compose(&first, &placed[f], &back);
+    {
+      const ec_pose foot = by;
+      ec_compose(&back, &foot, &by);
+    }
+    /* How the second foot would have the root link, against the first. */
+    for (i = 0; i < 9; ++i) {
+      R[i] = by.R[3 * (i / 3)] * root->R[3 * (i % 3)] +
+             by.R[3 * (i / 3) + 1] * root->R[3 * (i % 3) + 1] +
+             by.R[3 * (i / 3) + 2] * root->R[3 * (i % 3) + 2];
+    }
+    ec_log(R, v);
+    for (i = 0; i < 3; ++i) {
+      twist[i] += share[f] * (by.p[i] - root->p[i]);
+      twist[3 + i] += share[f] * v[i];
+    }
+  }
+  ec_exp(&twist[3], R);
+  by = *root;
+  ec_multiply(R, by.R, root->R);
+  for (i = 0; i < 3; ++i) root->p[i] += twist[i];
+}
+
+/* Where a robot has its feet, without deflection: from `body` after a walk. */
 static inline void ec_place_feet(const ec_robot* robot, const ec_memory* memory, ec_pose* placed) {
   int f;
   for (f = 0; f < robot->feet; ++f) {
