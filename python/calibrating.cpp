@@ -88,7 +88,8 @@ RunRecord RecordOf(const Project& project, const Paths& files, const CalibrateAr
           .seed = given.seed,
           .inputs = RecordInputs(inputs),
           .folder = std::filesystem::current_path(unknown).string(),
-          .assumptions = Assumptions{given.accept, given.prior.string(), given.days}};
+          .assumptions = Assumptions{given.accept, given.prior.string(), given.days,
+                                     given.marker_places.string()}};
 }
 
 PyCalibration CalibrateMarkers(const Project& project, const Paths& files,

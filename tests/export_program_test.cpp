@@ -13,6 +13,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "elastocal/files/output_files.hpp"
+#include "elastocal/io/marker_places_file.hpp"
 #include "tests/calibrated_talos.hpp"
 #include "tests/program_fixture.hpp"
 #include "tests/user_mjcf.hpp"
@@ -299,6 +300,35 @@ TEST_F(Program, OnlyWhatHeldOutPosturesSayHelpsIsExported) {
   EXPECT_EQ(without.exit_code, 3);
   EXPECT_NE(without.err.find("is not there"), std::string::npos) << without.err;
   EXPECT_FALSE(std::filesystem::exists(file + "2"));
+}
+
+// The zero of the last joint is told by measured places of markers alone: without them it is in
+// common with these places, and no gain.
+TEST_F(Program, AZeroThatMeasuredPlacesTellIsAGain) {
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  const std::string last = "flange_joint";
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
+  truth[FindParameter(model.parameters, last + ".theta")] = 0.02;
+  truth[FindParameter(model.parameters, "elbow_joint.theta")] = 0.01;
+  WritePostureTable(recording_, MakeSyntheticRecording(model, truth, {.postures = 40, .seed = 4}),
+                    project.tree);
+  std::vector<MarkerMeasurement> places;
+  for (const Marker& marker : model.markers) {
+    places.push_back({marker.name, marker.p_link_marker, 0.1e-3});
+  }
+  const std::string table = scratch_.Write("places.csv", FormatMarkerPlaces(places));
+  const std::string file = (scratch_.path() / "arm.yaml").string();
+  for (const bool measured : {false, true}) {
+    const std::string more = measured ? " --marker-places " + table : "";
+    ASSERT_EQ(Calibrate(project_, recording_, kFewFolds + more).exit_code, 0);
+    const ProgramResult result =
+        RunProgram("export " + out_ + " --format pal --min-gain 0.03 -o " + file);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const YAML::Node pal = YAML::Load(ReadFile(file));
+    EXPECT_NEAR(pal["elbow_joint"]["offset"].as<double>(), 0.01, 2e-3);
+    EXPECT_NEAR(pal[last]["offset"].as<double>(), measured ? 0.02 : 0.0, 2e-3);
+  }
 }
 
 }  // namespace

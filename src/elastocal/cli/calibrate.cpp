@@ -88,7 +88,7 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
                                          : CalibrateByMarkers(options, project, recordings, run);
   if (!result.fine) result.errors.emplace_back("no calibrated URDF is written");
   RunRecord record = MakeRunRecord("calibrate", options.common, inputs_read.get());
-  record.assumptions = {options.accept, options.prior, options.days};
+  record.assumptions = {options.accept, options.prior, options.days, options.marker_places};
   const std::string no_report = SetResults(folder, result.files, record, outputs);
   outputs.Set(options.common.json_file, result.files.at("summary.json"));
   outputs.Publish();

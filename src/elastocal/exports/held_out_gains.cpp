@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/exports/held_out_gains.hpp"
 
+#include <algorithm>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
+#include "elastocal/pipeline/known_places.hpp"
 #include "elastocal/recorded/measurements.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/validation/model_comparison.hpp"
@@ -17,6 +20,9 @@ namespace {
 
 constexpr int kGainFolds = 5;
 constexpr int kLeastGainPostures = 10;
+/// A place further than so many standard deviations from where the calibration has the marker is
+/// none that the calibration was made with.
+constexpr double kMeasuredThere = 5.0;
 
 /// The estimate as stored, judged by trials for validation.
 HeldOutSplit StoredSplit(const RecordedModel& recorded, Measurements measured,
@@ -34,6 +40,7 @@ HeldOutSplit StoredSplit(const RecordedModel& recorded, Measurements measured,
 
 /// Estimates without a fold each, judged by it.
 std::vector<HeldOutSplit> FoldSplits(const RecordedModel& recorded, const Recording& recording,
+                                     const std::vector<MarkerMeasurement>& places,
                                      const CalibrationOptions& options) {
   if (recording.posture_count() < kLeastGainPostures) {
     throw InputError(fmt::format("{}: {} postures; {} or more were expected to judge joints by",
@@ -52,8 +59,10 @@ std::vector<HeldOutSplit> FoldSplits(const RecordedModel& recorded, const Record
     split.training = SelectPostures(recording, training);
     split.held_out = SelectPostures(recording, held_out);
     split.same_trials = folds.unit == FoldUnit::kPosture;
-    CalibrationResult result = Calibrate(recorded.model, split.training, recorded.base,
-                                         ModelKinds(recorded.model).back(), options);
+    CalibrationOptions fold_options = options;
+    std::vector<std::string> warnings;  // those of the calibration say it
+    CalibrationResult result =
+        CalibrateWithPlaces(places, recorded, split.training, fold_options, warnings);
     split.model = std::move(result.model);
     split.delta = std::move(result.delta);
     splits.push_back(std::move(split));
@@ -61,15 +70,38 @@ std::vector<HeldOutSplit> FoldSplits(const RecordedModel& recorded, const Record
   return splits;
 }
 
+/// Markers that a calibration has where they were measured.
+std::set<std::string> MeasuredMarkers(const std::vector<MarkerMeasurement>& places,
+                                      const ErrorModel& model, const Eigen::VectorXd& estimate) {
+  std::set<std::string> measured;
+  for (const MarkerMeasurement& place : places) {
+    const auto marker = std::ranges::find(model.markers, place.marker, &Marker::name);
+    const int x = FindParameter(model.parameters, "marker." + place.marker + ".x");
+    if (marker == model.markers.end() || x < 0) continue;
+    const Eigen::Vector3d there = marker->p_link_marker + estimate.segment<3>(x);
+    if ((there - place.p_link_marker).norm() < kMeasuredThere * place.sd) {
+      measured.insert(place.marker);
+    }
+  }
+  return measured;
+}
+
 }  // namespace
 
-HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& options) {
+HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& given) {
   Project project = robot.project;
   CheckHasMarkers(project);
   project.elasticity = ElasticityOf(robot.calibration, project);
   Measurements measured = ReadMeasurements(project, RecordedRecordings(robot));
   const RecordedModel recorded = MakeRecordedModel(project, {}, measured);
   CheckApplies(robot.calibration, project, recorded.model);
+  std::vector<std::string> warnings;
+  const std::vector<MarkerMeasurement> places = OpenMarkerPlaces(
+      RecordedAssumptions(robot).marker_places, project, measured.calibration, {}, warnings);
+  GainOptions options = given;
+  options.known_markers = MeasuredMarkers(
+      places, recorded.model,
+      ErrorsByName(recorded.model, robot.calibration.joint_errors, robot.calibration.externals));
   HeldOutGains gains;
   gains.least = options.least;
   const int held_out = measured.validation.posture_count();
@@ -83,8 +115,9 @@ HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& o
     gains.judged_on =
         fmt::format("{} postures, each by an estimate without the fifth that it is in",
                     measured.calibration.posture_count());
-    gains.study = StudyGains(FoldSplits(recorded, measured.calibration, project.calibration),
-                             project.calibration, options);
+    gains.study =
+        StudyGains(FoldSplits(recorded, measured.calibration, places, project.calibration),
+                   project.calibration, options);
   }
   return gains;
 }

@@ -22,6 +22,8 @@ struct HeldOutGains {
 ///   (nearly equal ones together). Each is judged by the estimate of the other four, which is made
 ///   anew. That takes as long as five calibrations.
 ///
+/// Places of markers that calibrate was told (--marker-places) are told to folds too, and these
+/// markers stay there where a joint returns to nominal: the zero of a wrist then is a gain.
 /// Mistakes of the recording that calibrate undid (AcceptMistakes) are not undone here, and folds
 /// know no earlier calibration.
 ///

@@ -139,6 +139,7 @@ Assumptions RecordedAssumptions(const CalibratedRobot& robot) {
   }
   told.prior = FileOf(run, TextOf(run, "prior")).string();
   if (days.is_number()) told.days = days.get<double>();
+  told.marker_places = FileOf(run, TextOf(run, "marker_places")).string();
   return told;
 }
 

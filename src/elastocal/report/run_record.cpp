@@ -78,6 +78,7 @@ std::string UpdateRuns(const std::string& runs, const RunRecord& record) {
     item["accept"] = record.assumptions->accept;
     item["prior"] = record.assumptions->prior;
     item["days"] = record.assumptions->days;
+    item["marker_places"] = record.assumptions->marker_places;
   }
   json[record.command] = std::move(item);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -21,6 +21,7 @@ struct Assumptions {
   std::vector<std::string> accept = {};  ///< mistakes that were corrected
   std::string prior = {};                ///< an earlier calibration; empty: none
   double days = 1.0;                     ///< since then
+  std::string marker_places = {};        ///< table of measured places of markers; empty: none
 };
 
 /// How a result came about: enough to get it again.

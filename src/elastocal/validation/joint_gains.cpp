@@ -51,8 +51,12 @@ struct PlacedErrors {
 /// A split, ready for the displacements of its markers by changes of the errors.
 class SplitDisplacements {
  public:
-  SplitDisplacements(const HeldOutSplit& split, const CalibrationOptions& options)
+  SplitDisplacements(const HeldOutSplit& split, const CalibrationOptions& options,
+                     const std::set<std::string>& known_markers)
       : split_(split), options_(options), training_(EvenlyChosen(split.training)) {
+    for (const std::string& name : training_.marker_names) {
+      known_.push_back(known_markers.contains(name));
+    }
     from_ = {split.model, split.delta};
     before_ = Predict(from_.model, from_.delta, training_, options_);
     seen_ = SeenMask(training_);
@@ -106,8 +110,8 @@ class SplitDisplacements {
     return axes;
   }
 
-  /// Moves markers and, of a table of postures, the waist so that the training postures are
-  /// predicted as before: one step of Gauss and Newton, markers eliminated.
+  /// Moves markers, but for known ones, and, of a table of postures, the waist so that the training
+  /// postures are predicted as before: one step of Gauss and Newton, markers eliminated.
   void Refit(const Prediction& now, PlacedErrors& to) const {
     const int markers = training_.marker_count();
     const bool with_waist = !HasPoseByPosture(training_);
@@ -127,11 +131,12 @@ class SplitDisplacements {
         const Eigen::Vector3d error = before_.positions.block<1, 3>(i, 3 * m).transpose() - at;
         Matrix36 B;
         B << Eigen::Matrix3d::Identity(), -Skew(at);
+        normal += B.transpose() * B;
+        gradient += B.transpose() * error;
+        if (known_[index]) continue;
         pull[index] += axes[index].transpose() * error;
         by_waist[index] += axes[index].transpose() * B;
         count[m] += 1.0;
-        normal += B.transpose() * B;
-        gradient += B.transpose() * error;
       }
     }
     Vector6d twist = Vector6d::Zero();
@@ -162,6 +167,7 @@ class SplitDisplacements {
   const HeldOutSplit& split_;
   const CalibrationOptions& options_;
   Recording training_;
+  std::vector<bool> known_;  // by marker
   PlacedErrors from_;
   Prediction before_;
   ObservationMask seen_;
@@ -220,7 +226,7 @@ void Append(const Eigen::MatrixXd& rows, const ObservationMask& mask, Observatio
 void AddSplit(const HeldOutSplit& split, const CalibrationOptions& options,
               const std::vector<std::string>& owners, const GainOptions& gains,
               HeldOutErrors& errors) {
-  const SplitDisplacements displacements(split, options);
+  const SplitDisplacements displacements(split, options, gains.known_markers);
   Eigen::VectorXd deployed = Exported(split), nominal = split.delta;
   for (int i = 0; i < split.model.parameter_count(); ++i) {
     const Parameter& parameter = split.model.parameters[static_cast<std::size_t>(i)];

@@ -45,6 +45,8 @@ struct GainOptions {
   double least = 0.0;      ///< a joint that gains no more returns to nominal, m
   bool with_loads = true;  ///< whether what is deployed knows compliances; else geometry alone
   std::set<std::string> nominal = {};  ///< joints and legs that are nominal whatever they gain
+  /// Markers whose places are known beside the recording: they stay where the estimate has them.
+  std::set<std::string> known_markers = {};
 };
 
 /// Which joints of a calibration help on postures that it was not estimated from: backward
@@ -56,7 +58,7 @@ struct GainOptions {
 /// observations that it moves: a wrist is not judged by the markers of the feet. Markers, and the
 /// waist of a table of postures, are taken as the training postures would have them beside the
 /// joints that are left (least squares): what a joint has in common with the place of its markers
-/// is no gain.
+/// is no gain. Where the place is known (`known_markers`), it is one.
 ///
 /// Displacements by single joints are taken as additive (errors of 10 mrad: to some percent of
 /// themselves). What exports do not carry, corrections (corrections.hpp) and biases of torque
