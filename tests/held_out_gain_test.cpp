@@ -7,10 +7,10 @@
 
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/elastocal.hpp"
+#include "elastocal/measurement/thinned_motions.hpp"
 #include "elastocal/mistakes/find_contradictions.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
-#include "elastocal/mistakes/thinned_motions.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/validation/held_out.hpp"
 #include "tests/test_files.hpp"
