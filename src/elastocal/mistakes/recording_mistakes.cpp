@@ -363,8 +363,7 @@ std::vector<std::string> AcceptMistakes(const Project& project,
     }
   }
   for (const StatedCorrection& one : stated) {
-    undone.push_back(ApplyCorrection(one, project.tree, measured) +
-                     DescribeUnconfirmed(one, stated, measured));
+    undone.push_back(ApplyCorrection(one, project.tree, measured));
   }
   if (names.empty()) return undone;
   std::set<std::string> told;
