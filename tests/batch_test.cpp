@@ -158,6 +158,14 @@ TEST_F(Batch, EveryOptionIsKnownBeforeTheFirstTask) {
   EXPECT_NE(result.err.find("task 'late_1': calibrate: "), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("'--kfodl'"), std::string::npos) << result.err;
   EXPECT_FALSE(fs::exists(Folder("out") + "/arm_1.log"));
+
+  scratch_.Write("fleet.yaml", good + "  - {name: late, robots: 2, simulate: {arm-postures: x}}\n");
+  const ProgramResult wrong_value = Run("out");
+  EXPECT_EQ(wrong_value.exit_code, 3) << wrong_value.out;
+  EXPECT_NE(wrong_value.err.find("task 'late_1': simulate: --arm-postures: found 'x'"),
+            std::string::npos)
+      << wrong_value.err;
+  EXPECT_FALSE(fs::exists(Folder("out") + "/arm_1.log"));
 }
 
 /// mpirun sends SIGTERM to its ranks where it gets Ctrl-C; the first of them is the one that

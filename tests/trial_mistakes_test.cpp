@@ -229,6 +229,36 @@ TEST_F(TrialMistakes, ASignIsUndoneInAllTrialsThatDoNotContradict) {
   EXPECT_EQ(measured.calibration.q(0, 2), 0.01);
 }
 
+// Fits to thousands of moments take minutes: what leaves much of the error of few is not tried on
+// all.
+TEST_F(TrialMistakes, SuspicionsOfMotionsAreTriedByFewMomentsFirst) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  Measurements measured;
+  Recording& wrong = measured.calibration;
+  wrong = MakeSyntheticRecording(model, Eigen::VectorXd::Zero(model.parameter_count()),
+                                 {.postures = 500});
+  wrong.trials = {{"swing", TrialKind::kSine, {project_.chains.front().name}}};
+  wrong.trial.assign(500, 0);
+  wrong.q.col(2) *= -1.0;
+  int of_all = 0;
+  double left_of_few = 0.0;
+  const auto error_of = [&](const RecordedModel&, const Recording& recording) {
+    of_all += recording.posture_count() > 120 ? 1 : 0;
+    if (recording.q(0, 2) == wrong.q(0, 2)) return 0.05;
+    return recording.posture_count() > 120 ? 1e-3 : left_of_few;
+  };
+  left_of_few = 0.04;
+  EXPECT_TRUE(FindMistakesBy(project_, {}, measured, 0.05, error_of).empty());
+  EXPECT_EQ(of_all, 0);
+  left_of_few = 0.001;
+  const std::vector<RecordingMistake> found =
+      FindMistakesBy(project_, {}, measured, 0.05, error_of);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].name, "sign:" + project_.tree.joints[2].name);
+  EXPECT_EQ(found[0].after, 1e-3);
+  EXPECT_GT(of_all, 0);
+}
+
 // Cameras whose export has one axis the other way.
 TEST_F(TrialMistakes, MarkersOfTheOppositeHandAreNamed) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);

@@ -12,6 +12,7 @@
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/calibration/torque_check.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/math/statistics.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 #include "tests/dense_problem.hpp"
 #include "tests/standing_robot.hpp"
@@ -300,6 +301,31 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   recording = clean;
   recording.torques *= 1.3;  // masses of a robot description may be off by this
   EXPECT_TRUE(FindContradictoryTorques(robot_.model, recording, 1e-3).empty());
+}
+
+// A weight that is aside by 20 mm hides what an ankle bears where its torques vary little, but it
+// turns nothing round.
+TEST_F(StandingTest, AReversedSensorThatVariesLittleIsNamed) {
+  const Recording clean = Record();
+  const int ankle = FindJoint(robot_.project.tree, "leg_left_5_joint");
+  std::vector<double> known;
+  for (const double torque : clean.torques.col(ankle)) {
+    if (std::isfinite(torque)) known.push_back(torque);
+  }
+  ASSERT_GT(known.size(), 24u);
+  const double middle = Median(
+      Eigen::Map<const Eigen::VectorXd>(known.data(), static_cast<Eigen::Index>(known.size())));
+  constexpr double kNear = 20.0;  // N.m; the spread is below the 17 that 20 mm stand for
+  Recording recording = clean;
+  for (double& torque : recording.torques.col(ankle)) {
+    torque = std::abs(torque - middle) < kNear ? torque : std::nan("");
+  }
+  EXPECT_TRUE(FindContradictoryTorques(robot_.model, recording, 1e-3).empty());
+  recording.torques.col(ankle) *= -1.0;
+  const auto found = FindContradictoryTorques(robot_.model, recording, 1e-3);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].joint, ankle);
+  EXPECT_EQ(static_cast<int>(found[0].kind), static_cast<int>(TorqueContradiction::kReversed));
 }
 
 // What is not known of a leg's load: sensors that all show a quarter too much are off by a fifth of

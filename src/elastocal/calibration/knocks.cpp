@@ -8,6 +8,7 @@
 #include "elastocal/calibration/displacement_step.hpp"
 #include "elastocal/calibration/fit.hpp"
 #include "elastocal/measurement/moments.hpp"
+#include "elastocal/measurement/thinned_motions.hpp"
 
 namespace elastocal {
 namespace {
@@ -17,6 +18,8 @@ constexpr int kKnockUpdates = 6;         // steps, each with the noise
 constexpr double kLeastDistance = 1e-3;  // m
 constexpr double kLeastScatters = 3.0;
 constexpr double kLeastInMotion = 2.0;  // of significance: a correlation is known roughly
+constexpr int kMostMoments = 250;       // of motions, that say whether a search is worth its time
+constexpr double kShareOfStep = 0.7;    // of a step, by few of the moments
 
 std::vector<int> Estimated(const ErrorModel& model, const BaseParameters& base) {
   std::vector<int> free;
@@ -125,6 +128,41 @@ DisplacementStep AmongCorrelated(const DisplacementStep& step, SplitExperiment s
                          search.clusters, options.outlier_probability);
 }
 
+SplitExperiment StartSearch(const ErrorModel& model, const Recording& recording,
+                            const BaseParameters& base, const std::vector<LabelCluster>& clusters,
+                            const CalibrationOptions& options) {
+  SplitExperiment search{model, recording, clusters, Estimated(model, base), {}};
+  const FitProblem problem{search.model, search.recording, options, NoiseGroups(model, recording)};
+  search.fit = StartFit(problem, SelectAll(model, recording),
+                        Eigen::VectorXd::Zero(model.parameter_count()));
+  return search;
+}
+
+/// Fits what is known so far, and looks for a further step.
+DisplacementStep NextStep(const CalibrationOptions& options, SplitExperiment& search) {
+  const FitProblem problem{search.model, search.recording, options,
+                           NoiseGroups(search.model, search.recording)};
+  const Selection selection = SelectAll(search.model, search.recording);
+  search.fit = FitParameters(problem, selection, search.free, search.fit, Robustness::kMoments,
+                             kKnockUpdates);
+  return FindLargestStep(problem, selection, search.free, search.fit, search.clusters,
+                         options.outlier_probability);
+}
+
+/// Whether a recording of thousands of moments can have a knock. A step that all of them prove is
+/// as large in every tenth of them, and has a tenth of its significance at least.
+bool MayHaveKnock(const ErrorModel& model, const Recording& recording, const BaseParameters& base,
+                  const std::vector<LabelCluster>& clusters, const CalibrationOptions& options) {
+  const Recording thinned = WithThinnedMotions(recording, kMostMoments);
+  if (thinned.posture_count() == recording.posture_count()) return true;
+  SplitExperiment search = StartSearch(model, thinned, base, clusters, options);
+  const DisplacementStep step = NextStep(options, search);
+  const double share = static_cast<double>(thinned.posture_count()) / recording.posture_count();
+  return step.cluster >= 0 && step.significance > kShareOfStep * share &&
+         step.displacement.norm() >=
+             kShareOfStep * std::max(kLeastDistance, kLeastScatters * step.scatter);
+}
+
 }  // namespace
 
 std::vector<Knock> FindKnocks(const ErrorModel& model, const Recording& recording,
@@ -133,17 +171,11 @@ std::vector<Knock> FindKnocks(const ErrorModel& model, const Recording& recordin
   if (recording.trials.empty()) return {};
   CalibrationOptions quick = options;
   quick.support_form = SupportForm::kNuisance;
-  SplitExperiment search{model, recording, clusters, Estimated(model, base), {}};
-  const FitProblem problem{search.model, search.recording, quick, NoiseGroups(model, recording)};
-  search.fit = StartFit(problem, SelectAll(model, recording),
-                        Eigen::VectorXd::Zero(model.parameter_count()));
+  if (!MayHaveKnock(model, recording, base, clusters, quick)) return {};
+  SplitExperiment search = StartSearch(model, recording, base, clusters, quick);
   std::vector<Knock> knocks;
   while (static_cast<int>(knocks.size()) < kMaxKnocks) {
-    const Selection selection = SelectAll(search.model, search.recording);
-    search.fit = FitParameters(problem, selection, search.free, search.fit, Robustness::kMoments,
-                               kKnockUpdates);
-    DisplacementStep step = FindLargestStep(problem, selection, search.free, search.fit,
-                                            search.clusters, options.outlier_probability);
+    DisplacementStep step = NextStep(quick, search);
     if (!IsKnock(step, 1.0)) break;
     if (HasMotion(recording)) {
       step = AmongCorrelated(step, search, quick);

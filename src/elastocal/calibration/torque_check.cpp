@@ -57,9 +57,14 @@ std::optional<TorqueLine> FitLine(const Pairs& pairs) {
   const double norm = std::sqrt(x.square().sum() * y.square().sum());
   const TorqueLine line{.slope = (x * y).sum() / x.square().sum(),
                         .correlation = norm > 0.0 ? (x * y).sum() / norm : 0.0};
-  // Neither masses nor friction turn torques round.
-  const double least = line.correlation < -kFollows ? kLeastReversed : kLeastSpread;
-  if (!(spread >= std::max(least, kLever * pairs.weight))) return std::nullopt;
+  // Neither masses nor friction turn torques round, nor does a weight that is aside: it adds a
+  // constant, or something that does not follow statics.
+  const bool follows_reversed = line.correlation < -kFollows;
+  const bool reversed = follows_reversed && pairs.expected.size() >= kManyPairs &&
+                        line.slope < -kLeastSlope && line.slope > -kMostSlope;
+  const double least = follows_reversed ? kLeastReversed : kLeastSpread;
+  const double uncertain = reversed ? 0.0 : kLever * pairs.weight;
+  if (!(spread >= std::max(least, uncertain))) return std::nullopt;
   return line;
 }
 

@@ -259,6 +259,21 @@ void AddPlayOptions(CLI::App& command, SimulateCommand& options) {
                    "Replace recordings in the folder that were not simulated");
 }
 
+/// What is wrong with the value of a setting; empty: nothing. Known before anything is done, so
+/// that a batch of days refuses it at once.
+std::string WrongSetting(const std::string& key, const std::string& text) {
+  VirtualExperimentOptions tried;
+  for (const SimulationSetting& setting : SimulationSettings(tried)) {
+    if (setting.key != key) continue;
+    try {
+      ApplySetting(setting, text, "");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+  return "";
+}
+
 /// The same settings as in --settings, each a flag.
 void AddSettings(CLI::App& command, SimulateCommand& options) {
   VirtualExperimentOptions defaults;
@@ -267,6 +282,7 @@ void AddSettings(CLI::App& command, SimulateCommand& options) {
     command
         .add_option(FlagName(setting.key), options.flags[setting.key],
                     setting.help + (value.empty() ? "" : " [" + value + "]"))
+        ->check([key = setting.key](const std::string& text) { return WrongSetting(key, text); })
         ->group(setting.group);
   }
 }

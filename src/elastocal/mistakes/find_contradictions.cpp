@@ -12,9 +12,9 @@
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/measurement/thinned_motions.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
-#include "elastocal/mistakes/thinned_motions.hpp"
 #include "elastocal/validation/held_out.hpp"
 
 namespace elastocal {

@@ -8,7 +8,7 @@
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
-#include "elastocal/mistakes/thinned_motions.hpp"
+#include "elastocal/measurement/thinned_motions.hpp"
 
 namespace elastocal {
 namespace {

@@ -16,6 +16,7 @@
 #include "elastocal/calibration/turned_axes.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/measurement/thinned_motions.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/mistakes/suspected_signs.hpp"
 #include "elastocal/mistakes/tried_correction.hpp"
@@ -32,6 +33,8 @@ constexpr std::size_t kManyLeftOut = 4;   // a quarter of the postures
 constexpr double kLeftByLeavingOut = 0.3;
 constexpr double kNoWorse = 1.2;       // of what is left without the postures
 constexpr double kLikeTheMost = 0.95;  // of the widest prior
+constexpr int kMostMoments = 120;      // of motions, by which a suspicion is tried first
+constexpr double kNotHalf = 0.75;      // of their error is left: nor is it half of that of all
 
 /// The signs of the joints that move in these postures, undone in all.
 std::vector<TriedCorrection> SignsIn(const std::vector<int>& postures, const RobotTree& tree,
@@ -289,12 +292,23 @@ std::vector<RecordingMistake> FindMistakesBy(
     const Project& project, std::optional<std::uint64_t> seed, const Measurements& as_recorded,
     double error, const std::function<double(const RecordedModel&, const Recording&)>& error_of) {
   std::optional<RecordedModel> robot;  // made when there is a suspicion
+  const auto by_few = [&](const Recording& recording) {
+    return error_of(*robot, WithThinnedMotions(recording, kMostMoments));
+  };
+  double before = 0.0;  // by few moments
+  const bool many = WithThinnedMotions(as_recorded.calibration, kMostMoments).posture_count() <
+                    as_recorded.calibration.posture_count();
   const auto error_of_corrected = [&](const Recording& corrected) {
     if (!robot) {
       Measurements measured = as_recorded;
       robot = MakeRecordedModel(project, seed, measured, KnockSearch::kNone);
+      if (many) before = by_few(as_recorded.calibration);
     }
     try {
+      // What is wrong hardly comes to rest: minutes, where there are thousands of moments.
+      if (many && by_few(corrected) > kNotHalf * before) {
+        return std::numeric_limits<double>::infinity();
+      }
       return error_of(*robot, corrected);
     } catch (const InputError&) {
       return std::numeric_limits<double>::infinity();
@@ -349,8 +363,7 @@ std::vector<std::string> AcceptMistakes(const Project& project,
     }
   }
   for (const StatedCorrection& one : stated) {
-    undone.push_back(ApplyCorrection(one, project.tree, measured) +
-                     DescribeUnconfirmed(one, stated, measured));
+    undone.push_back(ApplyCorrection(one, project.tree, measured));
   }
   if (names.empty()) return undone;
   std::set<std::string> told;

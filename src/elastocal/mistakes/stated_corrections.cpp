@@ -153,6 +153,31 @@ std::vector<std::string> NamesOfTrials(const std::vector<int>& trials, const Rec
   return names;
 }
 
+/// Empty where a trial shows the joint as the estimate has it.
+std::string DescribeUnconfirmed(const StatedCorrection& correction,
+                                const std::vector<StatedCorrection>& all,
+                                const Measurements& measured) {
+  const std::vector<std::string> of_estimate = NamesOfTrials(
+      AllTrialsThatMove(measured.calibration, correction.coordinate), measured.calibration);
+  const std::vector<std::string> held_out = NamesOfTrials(
+      AllTrialsThatMove(measured.validation, correction.coordinate), measured.validation);
+  const auto undone_in = [&](const std::string& trial) {
+    return std::any_of(all.begin(), all.end(), [&](const StatedCorrection& one) {
+      return one.kind == correction.kind && one.linkage < 0 &&
+             one.coordinate == correction.coordinate && (one.trial.empty() || one.trial == trial);
+    });
+  };
+  const bool unconfirmed = !of_estimate.empty() && !held_out.empty() &&
+                           std::none_of(of_estimate.begin(), of_estimate.end(), undone_in) &&
+                           std::all_of(held_out.begin(), held_out.end(), undone_in);
+  if (!unconfirmed) return "";
+  return fmt::format(
+      "{}: its positions are corrected in all trials for validation that move it ({}), and not in "
+      "those of the estimate ({}): nothing shows which of the two the robot's log is like now; "
+      "record one more trial for validation that moves it",
+      correction.joint, fmt::join(held_out, ", "), fmt::join(of_estimate, ", "));
+}
+
 }  // namespace
 
 std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
@@ -285,29 +310,22 @@ std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree&
   return InWords(correction, tree);
 }
 
-std::string DescribeUnconfirmed(const StatedCorrection& correction,
-                                const std::vector<StatedCorrection>& all,
-                                const Measurements& measured) {
-  if (correction.kind == FaultKind::kCameraScale || correction.linkage >= 0) return "";
-  const std::vector<std::string> of_estimate = NamesOfTrials(
-      AllTrialsThatMove(measured.calibration, correction.coordinate), measured.calibration);
-  const std::vector<std::string> held_out = NamesOfTrials(
-      AllTrialsThatMove(measured.validation, correction.coordinate), measured.validation);
-  const auto undone_in = [&](const std::string& trial) {
-    return std::any_of(all.begin(), all.end(), [&](const StatedCorrection& one) {
-      return one.kind == correction.kind && one.linkage < 0 &&
-             one.coordinate == correction.coordinate && (one.trial.empty() || one.trial == trial);
-    });
-  };
-  const bool unconfirmed = !of_estimate.empty() && !held_out.empty() &&
-                           std::none_of(of_estimate.begin(), of_estimate.end(), undone_in) &&
-                           std::all_of(held_out.begin(), held_out.end(), undone_in);
-  if (!unconfirmed) return "";
-  return fmt::format(
-      "; all trials for validation that move it are corrected so, and no error of this result "
-      "would show that not they but {} were off by the opposite: if you do not know it, record one "
-      "again",
-      fmt::join(of_estimate, ", "));
+std::vector<std::string> UnconfirmedCorrections(const std::vector<std::string>& names,
+                                                const RobotTree& tree,
+                                                const Measurements& measured) {
+  std::vector<StatedCorrection> all;
+  for (const std::string& name : names) {
+    if (const auto one = ParseStatedCorrection(name, tree)) all.push_back(*one);
+  }
+  std::vector<std::string> objections;
+  std::set<std::pair<FaultKind, int>> judged;
+  for (const StatedCorrection& one : all) {
+    if (one.kind == FaultKind::kCameraScale || one.linkage >= 0) continue;
+    if (!judged.insert({one.kind, one.coordinate}).second) continue;
+    const std::string objection = DescribeUnconfirmed(one, all, measured);
+    if (!objection.empty()) objections.push_back(objection);
+  }
+  return objections;
 }
 
 void RefuseAccepted(const std::string& name, const std::set<std::string>& shown) {

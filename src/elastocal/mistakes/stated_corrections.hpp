@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/recorded/measurements.hpp"
@@ -51,12 +52,12 @@ std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree&
 /// what the recording does show (`shown`).
 [[noreturn]] void RefuseAccepted(const std::string& name, const std::set<std::string>& shown);
 
-/// "; all trials for validation that move it are corrected ..." of an offset or gain of a joint
-/// that is undone in all trials for validation that move it and in none of those of the estimate
-/// that do: then no error shows which of the two are off. Else empty. `all`: everything that is
-/// undone.
-std::string DescribeUnconfirmed(const StatedCorrection& correction,
-                                const std::vector<StatedCorrection>& all,
-                                const Measurements& measured);
+/// An objection for each joint of which an offset or gain is accepted in all trials for validation
+/// that move it, and in none of those of the estimate that do: the log had one state in these and
+/// another one in those, and no trial shows that the robot is now in that of the estimate. `names`
+/// of `--accept`; others than those with a size say nothing here.
+std::vector<std::string> UnconfirmedCorrections(const std::vector<std::string>& names,
+                                                const RobotTree& tree,
+                                                const Measurements& measured);
 
 }  // namespace elastocal

@@ -66,6 +66,40 @@ TEST_F(StatedCorrections, AreDoneWhereTheySay) {
   EXPECT_DOUBLE_EQ(measured_.trials[0].scale->size, 0.0) << "what the reference lengths say then";
 }
 
+// What was corrected in every trial that judges says nothing of what the robot's log is like now.
+TEST_F(StatedCorrections, OfAllTrialsThatJudgeConfirmNothing) {
+  const auto trials = [&](const std::vector<std::string>& names, TrialKind kind) {
+    Recording recording = measured_.calibration;
+    recording.trials.clear();
+    recording.trial.clear();
+    for (const std::string& name : names) {
+      recording.trial.insert(recording.trial.end(), 2, static_cast<int>(recording.trials.size()));
+      recording.trials.push_back({name, kind, {}});
+    }
+    const auto rows = static_cast<Eigen::Index>(2 * names.size());
+    recording.q = Eigen::MatrixXd::Zero(rows, project_.tree.coordinate_count());
+    for (Eigen::Index i = 1; i < rows; i += 2) recording.q.row(i).setConstant(0.5);
+    recording.markers = Eigen::MatrixXd::Ones(rows, 3);
+    return recording;
+  };
+  measured_.calibration = trials({"a", "b"}, TrialKind::kCalibration);
+  measured_.validation = trials({"c", "d"}, TrialKind::kRandom);
+  const auto objections = [&](const std::vector<std::string>& names) {
+    return UnconfirmedCorrections(names, project_.tree, measured_);
+  };
+  const std::string in_c = "offset:turret_joint@c=2", in_d = "offset:turret_joint@d=2";
+  const std::vector<std::string> found = objections({in_c, in_d});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].find("turret_joint: its positions are corrected in all trials for validation"),
+            0u)
+      << found[0];
+  EXPECT_NE(found[0].find("(c, d)"), std::string::npos) << found[0];
+  EXPECT_TRUE(objections({in_c}).empty());                      // d confirms the estimate
+  EXPECT_TRUE(objections({"gain:turret_joint=1.05"}).empty());  // one log, wrong throughout
+  EXPECT_TRUE(objections({"offset:turret_joint@a=2", "offset:turret_joint@b=2"}).empty());
+  EXPECT_TRUE(objections({"sign:turret_joint"}).empty());
+}
+
 TEST_F(StatedCorrections, HaveTheNamesThatFaultsAreGiven) {
   const Recording& recording = measured_.calibration;
   const auto name = [&](const RecordingFault& fault) {

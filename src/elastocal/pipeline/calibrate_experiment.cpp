@@ -20,6 +20,7 @@
 #include "elastocal/mistakes/find_faults.hpp"
 #include "elastocal/mistakes/plain_mistakes.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/pipeline/choose_model.hpp"
 #include "elastocal/pipeline/cross_validate.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
@@ -271,6 +272,8 @@ void JudgeRun(Work& work) {
   if (!work.sound) run.verdict.objections.clear();
   run.verdict.objections.insert(run.verdict.objections.begin(), run.faults.begin(),
                                 run.faults.end());
+  Append(UnconfirmedCorrections(work.options.accept, work.project.tree, work.as_recorded),
+         run.verdict.objections);
   run.coverage = FindCoverage(work.project, work.measured);
   const bool whole = std::all_of(run.coverage.begin(), run.coverage.end(), [](const auto& of) {
     return of.calibrated || of.refused.empty();

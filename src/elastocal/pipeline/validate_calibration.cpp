@@ -50,6 +50,15 @@ TransferValidation TransferTo(const Recording& recording, const RecordedModel& r
                          .uncalibrated_externals = stored.uncalibrated_externals});
 }
 
+/// Error of the calibrated robot alone.
+double ErrorOn(const Recording& recording, const RecordedModel& robot, const Project& project,
+               const ValidationRun& run) {
+  if (run.frozen) return ErrorOf(TransferTo(recording, robot, project, run));
+  return RefitTo(robot.model, recording, robot.base, project.calibration,
+                 run.calibration.joint_errors)
+      .metrics_all.rmse_3d;
+}
+
 /// What a URDF has a place for: without compliances and corrections, also where its geometry is
 /// that of the full model.
 std::map<std::string, double> GeometryInUrdf(const StoredCalibration& stored,
@@ -133,7 +142,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
   const std::vector<RecordingMistake> mistakes =
       FindMistakesBy(project, options.seed, as_recorded, ErrorOf(run.transfer),
                      [&](const RecordedModel& plain, const Recording& corrected) {
-                       return ErrorOf(TransferTo(corrected, plain, project, run));
+                       return ErrorOn(corrected, plain, project, run);
                      });
   for (const RecordingMistake& mistake : mistakes) {
     run.mistakes.push_back(DescribeMistake(mistake));

@@ -239,6 +239,9 @@ TEST(BagsTest, FolderOfABagIsOneRecording) {
   folder.Write("metadata.yaml", Metadata("    - bag_0.mcap\n    - bag_2.mcap\n"));
   ExpectInputError([&] { ReadRecordingFile(folder.path(), {}); },
                    {"metadata.yaml:6", "there is no file", "bag_2.mcap"});
+  folder.Write("metadata.yaml", Metadata("    - bag_0.mcap\n    - bag_1.mcap\n    - bag_0.mcap\n"));
+  ExpectInputError([&] { ReadRecordingFile(folder.path(), {}); },
+                   {"metadata.yaml:7", "twice", "bag_0.mcap"});
 }
 
 TEST(BagsTest, FolderOfADatabaseIsOneRecording) {

@@ -64,12 +64,18 @@ TransferValidation ValidateFrozen(const ErrorModel& model, const Recording& reco
   return validation;
 }
 
+Refit RefitTo(const ErrorModel& model, const Recording& recording, const BaseParameters& base,
+              const CalibrationOptions& options,
+              const std::map<std::string, double>& joint_errors) {
+  return MakeRefit(RefitExternals(model, recording, base, options, joint_errors), recording,
+                   options);
+}
+
 TransferValidation ValidateTransfer(const ErrorModel& model, const Recording& recording,
                                     const BaseParameters& base, const CalibrationOptions& options,
                                     const std::map<std::string, double>& joint_errors) {
   TransferValidation validation;
-  validation.calibrated =
-      MakeRefit(RefitExternals(model, recording, base, options, joint_errors), recording, options);
+  validation.calibrated = RefitTo(model, recording, base, options, joint_errors);
   validation.uncalibrated = RefitLike(validation.calibrated, model, recording, base, options, {});
   return validation;
 }

@@ -23,6 +23,10 @@ struct TransferValidation {
   int not_predicted = 0;  ///< observations
 };
 
+/// Refits waist and markers of a robot with these errors of joint parameters (by name, rad or m).
+Refit RefitTo(const ErrorModel& model, const Recording& recording, const BaseParameters& base,
+              const CalibrationOptions& options, const std::map<std::string, double>& joint_errors);
+
 /// Refits waist and markers of the nominal and of the calibrated robot (errors of joint parameters
 /// by name, rad or m) to another recording. The calibrated model decides which observations are
 /// outliers, so that both are judged on the same data.

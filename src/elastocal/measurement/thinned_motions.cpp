@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "elastocal/mistakes/thinned_motions.hpp"
+#include "elastocal/measurement/thinned_motions.hpp"
 
 #include <algorithm>
 #include <vector>
