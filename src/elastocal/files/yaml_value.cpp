@@ -126,7 +126,8 @@ class YamlBuilder : public YAML::EventHandler {
 
 YamlValue YamlValue::Parse(const std::string& text, const std::string& source) {
   if (text.size() > 1u << 20) {
-    throw InputError(source + ": has more than 1 MiB; a project file (YAML) was expected");
+    throw InputError(source +
+                     ": has more than 1 MiB; a file in YAML that this program reads has less");
   }
   RequireUtf8(text, source);
   YamlBuilder builder(source);
