@@ -23,6 +23,12 @@ TEST_F(Program, CompareNamesTheJointThatMoved) {
   EXPECT_NE(result.out.find("Moved by more than their uncertainty: elbow_joint\n"),
             std::string::npos)
       << result.out;
+  EXPECT_EQ(result.out.find("Moved by more"), 0u) << "the verdict comes first";
+  EXPECT_NE(result.out.find("more: --verbose\n"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("Not compared\n"), std::string::npos) << result.out;
+  const ProgramResult all = RunProgram("compare --verbose " + out_ + " " + later);
+  EXPECT_EQ(all.out.find("more: --verbose\n"), std::string::npos) << all.out;
+  EXPECT_NE(all.out.find("Not compared\n"), std::string::npos) << all.out;
   EXPECT_LT(result.out.find("elbow_joint.theta"), result.out.find("shoulder_joint.theta"));
   const nlohmann::json json = nlohmann::json::parse(ReadFile(json_file));
   EXPECT_EQ(json["status"], "moved");

@@ -86,6 +86,14 @@ TEST(WarningGroups, TheNameOfAFileMayHaveBlanks) {
             std::vector<std::string>{"joint arm.left: it is late (likewise arm.right)"});
 }
 
+// A robot's names need have neither digits nor underscores.
+TEST(WarningGroups, NamesWithDotsAndDashesAreNames) {
+  EXPECT_EQ(GroupWarnings({"the axes of L.knee, L.ankle-pitch are no longer parallel (0.6 deg)",
+                           "the axes of R.knee, R.ankle-pitch are no longer parallel (0.4 deg)"}),
+            std::vector<std::string>{"the axes of L.knee, L.ankle-pitch are no longer parallel "
+                                     "(0.6 deg) (likewise R.knee R.ankle-pitch)"});
+}
+
 TEST(WarningGroups, RepeatedSentencesAreCounted) {
   EXPECT_EQ(GroupWarnings({"17 outlying positions removed", "12 outlying positions removed"}),
             std::vector<std::string>{"17 outlying positions removed (2 times)"});

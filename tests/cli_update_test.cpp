@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -49,6 +50,24 @@ TEST_F(Program, APriorMakesAFewPosturesEnough) {
   const ProgramResult alone =
       RunProgram("calibrate " + project_ + " --recording " + today + " --days 2 -o " + updated);
   EXPECT_EQ(alone.exit_code, 2) << "--days without --prior";
+}
+
+// Whatever it is called this time.
+TEST_F(Program, APriorFromTheSameRecordingCountsTwice) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  const std::string copy = (scratch_.path() / "copy.csv").string();
+  std::filesystem::copy_file(recording_, copy);
+  const std::string today =
+      AnotherDay(scratch_.path() / "today.csv", project_, truth_, "elbow_joint.theta", 0.0);
+  const auto twice = [&](const std::string& recording) {
+    const ProgramResult result =
+        RunProgram("calibrate " + project_ + " --recording " + recording + " --prior " + out_ +
+                   " --kfold 0 -o " + (scratch_.path() / "updated").string());
+    return result.err.find("made from the same recording, which counts twice") != std::string::npos;
+  };
+  EXPECT_TRUE(twice(copy));
+  EXPECT_TRUE(twice(recording_));
+  EXPECT_FALSE(twice(today));
 }
 
 /// Makes two entries of a covariance larger than their variances allow.

@@ -24,6 +24,7 @@ constexpr double kLeftWithoutScatter = 0.5;
 constexpr double kLoose = 0.5 * M_PI / 180.0, kLooseSlide = 2e-3, kLeftWithoutLoose = 0.4;
 constexpr double kOfMedian = 1.4826;  // a normal deviation's sd over its median size
 constexpr int kSteps = 2;             // of Newton's method
+constexpr double kShown = 0.1;        // of the largest displacement
 
 bool IsSliding(const RobotTree& tree, int coordinate) {
   return tree.joints[tree.coordinate_joint[coordinate]].type == JointType::kPrismatic;
@@ -39,10 +40,42 @@ Eigen::VectorXd SquaresOf(const CalibrationResult& result, const Recording& reco
       .sum();
 }
 
-/// Where a parabola through the squares at -1, 0 and 1 is least.
-double LeastOf(double before, double at, double after) {
-  const double curvature = before + after - 2.0 * at;
-  return curvature > 0.0 ? 0.5 * (before - after) / curvature : 0.0;
+/// Squares of all postures where a joint is at -1, 0 and 1 steps from where it was.
+struct Parabola {
+  Eigen::VectorXd before, at, after;
+
+  /// 1 in postures whose markers the joint moves by a tenth or more of how far it moves those of
+  /// any posture, 0 elsewhere: with what it carries out of sight, a joint still changes the loads
+  /// that deflect other links, and that does not tell where it is.
+  Eigen::ArrayXd Shown() const {
+    const Eigen::ArrayXd curvature = (before + after - 2.0 * at).array();
+    const double least = kShown * kShown * std::max(0.0, curvature.maxCoeff());
+    return (curvature > least).cast<double>();
+  }
+  /// In steps, to where the squares are least; 0 where nothing shows it.
+  Eigen::ArrayXd ToLeast() const {
+    const Eigen::ArrayXd curvature = (before + after - 2.0 * at).array();
+    return (Shown() > 0.0).select(0.5 * (before - after).array() / curvature, 0.0);
+  }
+};
+
+Parabola ParabolaOf(const CalibrationResult& result, const Recording& at, int coordinate,
+                    double step, const Eigen::VectorXd& squares,
+                    const CalibrationOptions& options) {
+  Recording other = at;
+  other.q.col(coordinate).array() -= step;
+  Eigen::VectorXd before = SquaresOf(result, other, options);
+  other.q.col(coordinate).array() += 2.0 * step;
+  return {std::move(before), squares, SquaresOf(result, other, options)};
+}
+
+/// By the median size of what is shown.
+double SdOfShown(const Eigen::VectorXd& moved, const Eigen::ArrayXd& shown) {
+  std::vector<double> sizes;
+  for (Eigen::Index i = 0; i < moved.size(); ++i) {
+    if (shown[i] > 0.0) sizes.push_back(std::abs(moved[i]));
+  }
+  return sizes.empty() ? 0.0 : kOfMedian * Median(sizes);
 }
 
 }  // namespace
@@ -75,18 +108,15 @@ std::vector<CoarsePositions> FindCoarsePositions(const CalibrationResult& result
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (const CoarsePositions& one : coarse) {
       const double h = 0.25 * one.step;
-      Recording other = moved;
-      other.q.col(one.coordinate).array() -= h;
-      const Eigen::VectorXd before = SquaresOf(result, other, options);
-      other.q.col(one.coordinate).array() += 2.0 * h;
-      const Eigen::VectorXd after = SquaresOf(result, other, options);
-      const Eigen::VectorXd was = moved.q.col(one.coordinate);
-      for (int i = 0; i < recording.posture_count(); ++i) {
-        const double nominal = recording.q(i, one.coordinate);
-        const double least = was[i] + h * LeastOf(before[i], at[i], after[i]);
-        moved.q(i, one.coordinate) =
-            std::clamp(least, nominal - kMostOfStep * one.step, nominal + kMostOfStep * one.step);
-      }
+      const Parabola parabola = ParabolaOf(result, moved, one.coordinate, h, at, options);
+      const Eigen::ArrayXd logged = recording.q.col(one.coordinate).array();
+      const double most = kMostOfStep * one.step;
+      auto q = moved.q.col(one.coordinate);
+      q = (q.array() + h * parabola.ToLeast())
+              .max(logged - most)
+              .min(logged + most)
+              .matrix()
+              .eval();
       at = SquaresOf(result, moved, options);
     }
   }
@@ -115,21 +145,16 @@ std::optional<ScatteredPositions> FindScatteredPositions(const CalibrationResult
     Recording moved = recording;
     auto q = moved.q.col(joint.coordinate);
     Eigen::VectorXd at = given;
+    Eigen::ArrayXd shown;
     for (int step = 0; step < kSteps; ++step) {
-      const Eigen::VectorXd was = q;
-      q.array() -= enough;
-      const Eigen::VectorXd before = SquaresOf(result, moved, options);
-      q.array() += 2.0 * enough;
-      const Eigen::VectorXd after = SquaresOf(result, moved, options);
-      for (int i = 0; i < recording.posture_count(); ++i) {
-        q[i] = was[i] + enough * LeastOf(before[i], at[i], after[i]);
-      }
+      const Parabola parabola = ParabolaOf(result, moved, joint.coordinate, enough, at, options);
+      if (step == 0) shown = parabola.Shown();
+      q.array() += enough * shown * parabola.ToLeast();
       at = SquaresOf(result, moved, options);
       if (at.sum() > kLeftWithoutSteps * given.sum()) break;
     }
     if (!(at.sum() < least)) continue;
-    const double off =
-        kOfMedian * Median((q - recording.q.col(joint.coordinate)).cwiseAbs().eval());
+    const double off = SdOfShown(q - recording.q.col(joint.coordinate), shown);
     if (off < enough) continue;
     least = at.sum();
     found = {joint.coordinate, off, at.sum() / given.sum()};

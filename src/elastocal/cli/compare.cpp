@@ -35,8 +35,8 @@ int Compare(const CompareOptions& options) {
                       .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
                   "\n");
   outputs.Publish();
-  Print(options.common.Silent(),
-        DescribeComparison(run.a, run.b, run.comparison, options.comparison));
+  Print(options.common.Silent(), DescribeComparison(run.a, run.b, run.comparison,
+                                                    options.comparison, options.common.verbose));
   PrintWarnings(run.comparison.warnings, options.common.verbose);
   return kFine;
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/cli/comparison_report.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -32,22 +34,35 @@ UserScale ScaleOf(const std::string& unit) {
   return {1.0, unit};
 }
 
-std::string JointTable(const CalibrationComparison& comparison) {
+constexpr int kRowsOfScreen = 10;
+
+std::string MoreRows(int all, int shown) {
+  return all > shown ? fmt::format("  and {} more: --verbose\n", all - shown) : "";
+}
+
+/// The most significant first; `most` rows, or those of all joints that moved.
+std::string JointTable(const CalibrationComparison& comparison, int most) {
   TextTable table({"joint", "parameters", "F", "p", "p of all joints", "verdict"});
+  int rows = 0;
   for (const JointDifference& joint : comparison.joints) {
+    if (rows >= most && !joint.moved) continue;
+    ++rows;
     table.Add({joint.joint, std::to_string(joint.test.parameters),
                std::isnan(joint.test.statistic) ? "-" : fmt::format("{:.2f}", joint.test.statistic),
                Probability(joint.test.p), Probability(joint.p_adjusted),
                joint.moved ? "moved" : "-"});
   }
-  return table.Render();
+  return table.Render() + MoreRows(static_cast<int>(comparison.joints.size()), rows);
 }
 
-/// Joint by joint, the most significant first, and so within each.
-std::string ParameterTable(const CalibrationComparison& comparison) {
+/// Joint by joint, the most significant first, and so within each; `most` rows.
+std::string ParameterTable(const CalibrationComparison& comparison, int most) {
   TextTable table({"parameter", "unit", "A", "B", "B - A", "sd", "95 % interval", ""});
+  int rows = 0, all = 0;
   for (const JointDifference& joint : comparison.joints) {
     for (const int i : joint.parameters) {
+      if (all++ >= most) continue;
+      ++rows;
       const ParameterDifference& one = comparison.parameters[i];
       const auto& [factor, unit] = ScaleOf(one.unit);
       const double sd = factor * one.sd;
@@ -58,7 +73,7 @@ std::string ParameterTable(const CalibrationComparison& comparison) {
                      (joint.moved && one.significant() ? " moved" : "")});
     }
   }
-  return table.Render();
+  return table.Render() + MoreRows(all, rows);
 }
 
 /// One line a reason.
@@ -165,18 +180,27 @@ Json ParameterJson(const ParameterDifference& one) {
 
 std::string DescribeComparison(const CalibrationEstimate& a, const CalibrationEstimate& b,
                                const CalibrationComparison& comparison,
-                               const ComparisonOptions& options) {
-  std::string text = fmt::format("{}\n  A: {}, from {}\n  B: {}, from {}\n\n", b.robot, a.source,
-                                 a.recording, b.source, b.recording);
-  text += JointTable(comparison);
+                               const ComparisonOptions& options, bool verbose) {
+  const int most = verbose ? std::numeric_limits<int>::max() : kRowsOfScreen;
+  std::string text = Conclusion(comparison, options.level) + "\n";
+  text += fmt::format("{}\n  A: {}, from {}\n  B: {}, from {}\n\n", b.robot, a.source, a.recording,
+                      b.source, b.recording);
+  text += JointTable(comparison, most);
   text +=
       "  all parameters of a joint together, whatever other joints did; p of all joints: adjusted "
       "for their number\n\n";
-  text += ParameterTable(comparison);
+  text += ParameterTable(comparison, most);
   text += "  * differs at 95 %, looked at alone; one in twenty does so by chance\n";
-  text += NotComparedText(comparison);
+  if (!comparison.markers.empty()) {
+    text +=
+        "  B - A is what is left where markers that stayed on their links are laid on each other: "
+        "it need not be B less A\n";
+  }
+  text += verbose
+              ? NotComparedText(comparison)
+              : fmt::format("  {} parameters are not compared\n", comparison.not_compared.size());
   if (!comparison.markers.empty()) text += "\n" + DescribeMarkers(comparison.markers);
-  return text + "\n" + Conclusion(comparison, options.level);
+  return text;
 }
 
 Json MakeComparisonJson(const CalibrationEstimate& a, const CalibrationEstimate& b,

@@ -13,7 +13,7 @@ namespace elastocal::cli {
 /// compared, the conclusion. Degrees and mm.
 std::string DescribeComparison(const CalibrationEstimate& a, const CalibrationEstimate& b,
                                const CalibrationComparison& comparison,
-                               const ComparisonOptions& options);
+                               const ComparisonOptions& options, bool verbose);
 
 /// The same for programs, SI (docs/formats.md).
 nlohmann::ordered_json MakeComparisonJson(const CalibrationEstimate& a,

@@ -48,7 +48,8 @@ std::string DescribeLeft(const CompensatedMotion& result) {
                fmt::format("{:.2f}", 1e3 * one.most.value), fmt::format("{:.2f}", one.most.time_s),
                fmt::format("{:.{}f}", period * one.samples, timed ? 2 : 0)});
   }
-  return table.Render() + "A degree counts 5.2 mm; a limb that yields has fewer than six joints\n";
+  return table.Render() +
+         "A degree counts 5.2 mm. (yields): fewer than six joints, which cannot correct all\n\n";
 }
 
 std::string DescribeCompensation(const CompensatedMotion& result, const RobotTree& tree) {

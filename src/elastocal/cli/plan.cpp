@@ -204,6 +204,7 @@ void AddWhat(CLI::App& command, PlanCommand& options) {
       .add_option("--count", options.options.validation.random_postures,
                   "Postures of each chain, of --kind random")
       ->check(CLI::Range(1, 1000))
+      ->excludes(postures)
       ->capture_default_str();
 }
 

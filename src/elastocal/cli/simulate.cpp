@@ -153,10 +153,22 @@ int SimulateInstruments(const SimulateCommand& command, const Project& project) 
   return RunObservationSimulation(of, project);
 }
 
+/// Options that would not do anything.
+void RefuseIdleOptions(const SimulateCommand& command, const Project& project) {
+  if (command.count > 0) {
+    throw InputError("--count: " + project.file.string() +
+                     " has neither contact nor instruments, whose postures it counts");
+  }
+  if (!command.kind.empty() && command.motion.empty() && command.postures.empty()) {
+    throw InputError("--kind: --motion FILE or --postures FILE was expected with it");
+  }
+}
+
 int Simulate(const SimulateCommand& command) {
   if (!command.deploy.empty()) return Deploy(command);
   const Project project = ReadProject(command.project);
   if (project.contact) return SimulateInstruments(command, project);
+  RefuseIdleOptions(command, project);
   const Simulation simulation = PrepareSimulation(project, MakeOptions(command, project));
   const SimulationFiles files = FilesOfSimulation(simulation, command.output, command.force);
   OutputSet outputs;

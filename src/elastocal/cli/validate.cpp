@@ -20,6 +20,7 @@
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/pipeline/validate_calibration.hpp"
 #include "elastocal/recorded/measurements.hpp"
+#include "elastocal/robot/parameters.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -49,6 +50,11 @@ std::string Table(const ValidationRun& run) {
   return table.Render();
 }
 
+bool ModelGivesWay(const ErrorModel& model) {
+  return std::any_of(model.parameters.begin(), model.parameters.end(),
+                     [](const Parameter& one) { return IsElastic(one.kind); });
+}
+
 /// One sentence for whoever reads no table.
 std::string VerdictText(const ValidationRun& run) {
   if (!run.mistakes.empty()) return "Verdict: the recording has a mistake; see below.\n\n";
@@ -66,6 +72,9 @@ std::string VerdictText(const ValidationRun& run) {
                   run.urdf ? " by the URDF alone" : ", nothing fitted");
   if (run.predicted > 0.0) {
     text += fmt::format(" (predicted: {} mm)", Millimetres(run.predicted, 3));
+  }
+  if (run.urdf && ModelGivesWay(run.transfer.calibrated.result.model)) {
+    text += fmt::format(", {} mm with compensation of elasticity", error(run.transfer.calibrated));
   }
   return text + ".\n\n";
 }

@@ -71,7 +71,7 @@ Parsed Parse(const std::string& warning) {
   for (std::string word; words >> word;) {
     const std::string core = Core(word);
     const bool varies =
-        core.find_first_of("0123456789_") != std::string::npos || NamesAnother(before);
+        core.find_first_of("0123456789_.-") != std::string::npos || NamesAnother(before);
     before = core;
     if (!varies) {
       pattern.push_back(word);

@@ -175,7 +175,7 @@ std::vector<std::string> BrokenGeometry(const RobotTree& nominal, const RobotTre
     warnings.push_back(
         wrist
             ? fmt::format("the axes of {} no longer meet in a point ({:.3f} mm apart): inverse "
-                          "kinematics in closed form for a spherical wrist is off by as much",
+                          "kinematics in closed form that relies on it is off by as much",
                           names, 1e3 * deviation)
             : fmt::format("the axes of {} are no longer parallel ({:.3f} deg): inverse kinematics "
                           "in closed form that relies on it is off by as much",

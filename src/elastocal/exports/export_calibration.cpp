@@ -223,6 +223,12 @@ void CheckExportOptions(const ExportOptions& options) {
   if (format == "mjcf" && options.mjcf.empty()) {
     throw InputError("format mjcf: the nominal model was expected (--mjcf FILE)");
   }
+  if (format != "mjcf" && !options.mjcf.empty()) {
+    throw InputError("format " + format + ": --mjcf is about format mjcf");
+  }
+  if (format != "c99" && !options.prefix.empty()) {
+    throw InputError("format " + format + ": --prefix is about format c99");
+  }
   if (format != "mjcf" && !options.mjcf_joints.empty()) {
     throw InputError("format " + format + ": --mjcf-joints is about format mjcf");
   }

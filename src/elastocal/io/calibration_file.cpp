@@ -21,8 +21,8 @@
 
 namespace elastocal {
 namespace {
-
 constexpr const char* kFormat = "elastocal-calibration-1";
+constexpr const char* kWhatCalibrateWrites = "format elastocal-calibration-1 of calibrate's file";
 constexpr std::int64_t kMostEstimates = 1000000;
 
 /// Units that a parameter can have by the last part of its name, and the largest value that is a
@@ -273,8 +273,8 @@ CalibrationEstimate ReadEstimate(const std::filesystem::path& file) {
 
 CalibrationEstimate ParseEstimate(const std::string& text, const std::string& source) {
   const YamlValue root = YamlValue::Parse(text, source);
-  root.Get("format").Expect(root.Get("format").Text() == kFormat,
-                            std::string("format ") + kFormat + ", which calibrate writes");
+  const YamlValue format = root.Find("format").value_or(root);
+  format.Expect(format.IsScalar() && format.Text() == kFormat, kWhatCalibrateWrites);
   CalibrationEstimate estimate;
   estimate.source = source;
   estimate.robot = root.Get("robot").Text();

@@ -21,10 +21,13 @@
 #include "elastocal/mistakes/plain_mistakes.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/pipeline/calibrated_robot.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/choose_model.hpp"
 #include "elastocal/pipeline/cross_validate.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/known_places.hpp"
+#include "elastocal/pipeline/still_joints.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/recorded/repeated_trials.hpp"
 #include "elastocal/robot/kinematics.hpp"
@@ -102,30 +105,6 @@ int UsualFolds(const Recording& recording) {
   return folds < 2 ? 0 : folds;
 }
 
-/// Joints that move markers and stood still in all postures, in a sentence; empty if there are
-/// none.
-std::string StillJoints(const ErrorModel& model, const Recording& recording) {
-  constexpr double kStill = 1e-3;  // rad or m
-  std::set<int> moving;
-  for (const int k : model.active_joints) {
-    for (const Drive& drive : DrivesOf(model.tree.joints[Size(k)])) moving.insert(drive.coordinate);
-  }
-  const auto& unknown = recording.joints_not_recorded;
-  std::vector<std::string> still;
-  for (const int c : moving) {
-    const std::string& name = model.tree.joints[Size(model.tree.coordinate_joint[Size(c)])].name;
-    const double range = recording.q.col(c).maxCoeff() - recording.q.col(c).minCoeff();
-    if (range < kStill && std::count(unknown.begin(), unknown.end(), name) == 0) {
-      still.push_back(name);
-    }
-  }
-  if (still.empty() || recording.posture_count() < 2) return "";
-  return fmt::format(
-      "{} stood still in all postures: what its motion would show is not known, and no error given "
-      "here holds where it moves",
-      fmt::join(still, ", "));
-}
-
 void Append(const std::vector<std::string>& more, std::vector<std::string>& warnings) {
   warnings.insert(warnings.end(), more.begin(), more.end());
 }
@@ -133,6 +112,7 @@ void Append(const std::vector<std::string>& more, std::vector<std::string>& warn
 /// What the steps of a calibration work on.
 struct Work {
   const Project& given;
+  const std::vector<std::filesystem::path>& recordings;
   const ExperimentOptions& options;
   Project project;           ///< `given` with the elasticity and the causes that were chosen
   Measurements measured;     ///< with markers split where they were knocked
@@ -144,6 +124,23 @@ struct Work {
   const CalibrationOptions& settings() const { return project.calibration; }
   const Recording& recording() const { return measured.calibration; }
 };
+
+/// By the contents of its files, whatever they are called this time.
+void WarnOfSameRecording(Work& work) {
+  std::vector<std::string>& warnings = work.run.warnings;
+  std::vector<std::string> of_validation;
+  const std::filesystem::path& prior = work.options.prior;
+  if (!WarnOfOwnRecording(FindCalibrationFiles(prior).calibration,
+                          InputFiles(work.given, work.recordings), of_validation)) {
+    return;
+  }
+  const bool told = std::any_of(warnings.begin(), warnings.end(), [](const std::string& one) {
+    return one.ends_with("which counts twice");
+  });
+  if (!told) {
+    warnings.push_back(prior.string() + ": made from the same recording, which counts twice");
+  }
+}
 
 /// What is estimated: elasticity and causes as the data decide or, not in the paper, as an earlier
 /// calibration has them, which is also the prior. A recording that is plainly wrong decides
@@ -170,6 +167,7 @@ void ChooseWhatIsEstimated(Work& work) {
   } else {
     Append(StartFromEarlier(options.prior, options.days, work.measured, options.seed, project),
            run.warnings);
+    WarnOfSameRecording(work);
   }
   run.extra = project.elasticity.extra;
 }
@@ -293,9 +291,9 @@ void JudgeRun(Work& work) {
 /// posture the same ones, so that none weighs more. The trials of all chains are joined.
 ///
 /// Not in the paper: what is plainly wrong is named, and nothing is chosen or judged by it.
-void ReadWhatWasMeasured(const std::vector<std::filesystem::path>& recordings, Work& work) {
+void ReadWhatWasMeasured(Work& work) {
   work.project.measurement.accepted = work.options.accept;
-  work.measured = ReadMeasurements(work.project, recordings);
+  work.measured = ReadMeasurements(work.project, work.recordings);
   work.run.undone = AcceptMistakes(work.project, work.options.accept, work.measured);
   work.run.faults = FindPlainMistakes(work.project, work.recording());
   work.sound = work.run.faults.empty();
@@ -357,10 +355,10 @@ CalibrationRun Finished(Work work) {
 CalibrationRun CalibrateExperiment(const Project& given,
                                    const std::vector<std::filesystem::path>& recordings,
                                    const ExperimentOptions& options) {
-  Work work{given, options, given, {}, {}, {}, {}};
+  Work work{given, recordings, options, given, {}, {}, {}, {}};
   CalibrationRun& run = work.run;
 
-  ReadWhatWasMeasured(recordings, work);
+  ReadWhatWasMeasured(work);
   ChooseWhatIsEstimated(work);
   MakeModel(work);
   Estimate(work);

@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include <fmt/format.h>
+
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/planning/chain_setups.hpp"
 
@@ -69,9 +71,10 @@ std::string WhyInfeasible(const ChainDesign& design) {
     return chain + "no feasible posture was found; what stands in the way most often is the " +
            design.blame;
   }
-  return chain +
-         "its feasible postures do not determine all parameters; hold some (identifiability: "
-         "hold) or widen its workspace";
+  return fmt::format(
+      "{}{} feasible postures do not determine all {} parameters; allow more postures (--count, "
+      "--max-count), hold some parameters (identifiability: hold) or widen its workspace",
+      chain, design.postures.size(), design.parameter_count);
 }
 
 int SideCount(const std::vector<ChainSetup>& setups) {

@@ -21,7 +21,7 @@ std::string StoppedJoints::JointAt(const Compensator& compensator, Eigen::Index 
   const double scale = slides ? 1e3 : kDegreesARadian;
   const char* unit = slides ? "mm" : "deg";
   const double at = compensator.command()[coordinate];
-  return fmt::format("{} ({:.2f} {})", joint.name, scale * at, unit);
+  return fmt::format("{} (at {:.2f} {})", joint.name, scale * at, unit);
 }
 
 void StoppedJoints::Look(const Compensator& compensator, double time_s, CompensatorStatus kind,
