@@ -103,7 +103,7 @@ TEST_F(HeldOutGain, NothingConfirmsAnOffsetThatIsUndoneInAllHeldOutTrials) {
     Measurements copy = measured;
     AcceptMistakes(project_, names, copy);
     std::string all;
-    for (const auto& one : UnconfirmedCorrections(names, project_.tree, copy)) all += one + "\n";
+    for (const auto& one : UnconfirmedCorrections(names, project_, copy)) all += one + "\n";
     return all;
   };
   const std::string why = "(check, again), and not in those of the estimate (swing)";

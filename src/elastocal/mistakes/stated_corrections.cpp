@@ -147,20 +147,50 @@ std::string InWords(const StatedCorrection& correction, const RobotTree& tree) {
                      where, from);
 }
 
-std::vector<std::string> NamesOfTrials(const std::vector<int>& trials, const Recording& recording) {
+/// Names of the markers that a joint moves against the root link.
+std::set<std::string> MarkersBeyond(const Project& project, int coordinate) {
+  const RobotTree& tree = project.tree;
+  std::set<std::string> beyond;
+  for (const Marker& marker : project.markers) {
+    for (const int k : JointsToBody(tree, tree.links[Size(marker.link)].body)) {
+      const std::vector<Drive> drives = DrivesOf(tree.joints[Size(k)]);
+      if (std::ranges::find(drives, coordinate, &Drive::coordinate) != drives.end()) {
+        beyond.insert(marker.name);
+      }
+    }
+  }
+  return beyond;
+}
+
+bool SeesAny(const Recording& recording, int trial, const std::set<std::string>& markers) {
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    if (recording.trial[Size(i)] != trial) continue;
+    for (int m = 0; m < recording.marker_count(); ++m) {
+      if (markers.contains(recording.marker_names[Size(m)]) && Seen(recording, i, m)) return true;
+    }
+  }
+  return false;
+}
+
+/// Names of the trials that move a joint and see a marker that it moves.
+std::vector<std::string> TrialsThatShow(const Recording& recording, int coordinate,
+                                        const std::set<std::string>& markers) {
   std::vector<std::string> names;
-  for (const int trial : trials) names.push_back(recording.trials[Size(trial)].name);
+  for (const int trial : AllTrialsThatMove(recording, coordinate)) {
+    if (SeesAny(recording, trial, markers)) names.push_back(recording.trials[Size(trial)].name);
+  }
   return names;
 }
 
 /// Empty where a trial shows the joint as the estimate has it.
 std::string DescribeUnconfirmed(const StatedCorrection& correction,
-                                const std::vector<StatedCorrection>& all,
+                                const std::vector<StatedCorrection>& all, const Project& project,
                                 const Measurements& measured) {
-  const std::vector<std::string> of_estimate = NamesOfTrials(
-      AllTrialsThatMove(measured.calibration, correction.coordinate), measured.calibration);
-  const std::vector<std::string> held_out = NamesOfTrials(
-      AllTrialsThatMove(measured.validation, correction.coordinate), measured.validation);
+  const std::set<std::string> beyond = MarkersBeyond(project, correction.coordinate);
+  const std::vector<std::string> of_estimate =
+      TrialsThatShow(measured.calibration, correction.coordinate, beyond);
+  const std::vector<std::string> held_out =
+      TrialsThatShow(measured.validation, correction.coordinate, beyond);
   const auto undone_in = [&](const std::string& trial) {
     return std::any_of(all.begin(), all.end(), [&](const StatedCorrection& one) {
       return one.kind == correction.kind && one.linkage < 0 &&
@@ -172,7 +202,7 @@ std::string DescribeUnconfirmed(const StatedCorrection& correction,
                            std::all_of(held_out.begin(), held_out.end(), undone_in);
   if (!unconfirmed) return "";
   return fmt::format(
-      "{}: its positions are corrected in all trials for validation that move it ({}), and not in "
+      "{}: its positions are corrected in all trials for validation that show it ({}), and not in "
       "those of the estimate ({}): nothing shows which of the two the robot's log is like now; "
       "record one more trial for validation that moves it",
       correction.joint, fmt::join(held_out, ", "), fmt::join(of_estimate, ", "));
@@ -311,18 +341,18 @@ std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree&
 }
 
 std::vector<std::string> UnconfirmedCorrections(const std::vector<std::string>& names,
-                                                const RobotTree& tree,
+                                                const Project& project,
                                                 const Measurements& measured) {
   std::vector<StatedCorrection> all;
   for (const std::string& name : names) {
-    if (const auto one = ParseStatedCorrection(name, tree)) all.push_back(*one);
+    if (const auto one = ParseStatedCorrection(name, project.tree)) all.push_back(*one);
   }
   std::vector<std::string> objections;
   std::set<std::pair<FaultKind, int>> judged;
   for (const StatedCorrection& one : all) {
     if (one.kind == FaultKind::kCameraScale || one.linkage >= 0) continue;
     if (!judged.insert({one.kind, one.coordinate}).second) continue;
-    const std::string objection = DescribeUnconfirmed(one, all, measured);
+    const std::string objection = DescribeUnconfirmed(one, all, project, measured);
     if (!objection.empty()) objections.push_back(objection);
   }
   return objections;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/recorded/measurements.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 
@@ -53,11 +54,12 @@ std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree&
 [[noreturn]] void RefuseAccepted(const std::string& name, const std::set<std::string>& shown);
 
 /// An objection for each joint of which an offset or gain is accepted in all trials for validation
-/// that move it, and in none of those of the estimate that do: the log had one state in these and
-/// another one in those, and no trial shows that the robot is now in that of the estimate. `names`
-/// of `--accept`; others than those with a size say nothing here.
+/// that show it (it moves, and a marker that it carries is seen), and in none of those of the
+/// estimate that do: the log had one state in these and another one in those, and no trial shows
+/// that the robot is now in that of the estimate. `names` of `--accept`; others than those with a
+/// size say nothing here.
 std::vector<std::string> UnconfirmedCorrections(const std::vector<std::string>& names,
-                                                const RobotTree& tree,
+                                                const Project& project,
                                                 const Measurements& measured);
 
 }  // namespace elastocal

@@ -80,12 +80,13 @@ TEST_F(StatedCorrections, OfAllTrialsThatJudgeConfirmNothing) {
     recording.q = Eigen::MatrixXd::Zero(rows, project_.tree.coordinate_count());
     for (Eigen::Index i = 1; i < rows; i += 2) recording.q.row(i).setConstant(0.5);
     recording.markers = Eigen::MatrixXd::Ones(rows, 3);
+    recording.marker_names = {project_.markers.back().name};
     return recording;
   };
   measured_.calibration = trials({"a", "b"}, TrialKind::kCalibration);
   measured_.validation = trials({"c", "d"}, TrialKind::kRandom);
   const auto objections = [&](const std::vector<std::string>& names) {
-    return UnconfirmedCorrections(names, project_.tree, measured_);
+    return UnconfirmedCorrections(names, project_, measured_);
   };
   const std::string in_c = "offset:turret_joint@c=2", in_d = "offset:turret_joint@d=2";
   const std::vector<std::string> found = objections({in_c, in_d});
@@ -98,6 +99,8 @@ TEST_F(StatedCorrections, OfAllTrialsThatJudgeConfirmNothing) {
   EXPECT_TRUE(objections({"gain:turret_joint=1.05"}).empty());  // one log, wrong throughout
   EXPECT_TRUE(objections({"offset:turret_joint@a=2", "offset:turret_joint@b=2"}).empty());
   EXPECT_TRUE(objections({"sign:turret_joint"}).empty());
+  measured_.validation.markers.bottomRows(2).setConstant(std::nan(""));
+  EXPECT_EQ(objections({in_c}).size(), 1u) << "d moves the joint, but no camera sees it there";
 }
 
 TEST_F(StatedCorrections, HaveTheNamesThatFaultsAreGiven) {

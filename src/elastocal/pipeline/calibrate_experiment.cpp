@@ -270,7 +270,7 @@ void JudgeRun(Work& work) {
   if (!work.sound) run.verdict.objections.clear();
   run.verdict.objections.insert(run.verdict.objections.begin(), run.faults.begin(),
                                 run.faults.end());
-  Append(UnconfirmedCorrections(work.options.accept, work.project.tree, work.as_recorded),
+  Append(UnconfirmedCorrections(work.options.accept, work.project, work.as_recorded),
          run.verdict.objections);
   run.coverage = FindCoverage(work.project, work.measured);
   const bool whole = std::all_of(run.coverage.begin(), run.coverage.end(), [](const auto& of) {
