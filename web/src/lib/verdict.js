@@ -14,12 +14,12 @@ const JUDGED_ON = {
   'the fit': 'on the calibration postures themselves',
 };
 
-/** What the verdict on the robot description (URDF) stands on: {before, after, on}, mm, the most independent of what there is. */
+/** What the verdict on the robot description (URDF) stands on: {before, after, compensated, on}, mm, the most independent of what there is. */
 export function judgedErrors(summary) {
   const urdf = summary.deployed?.urdf;
   if (typeof urdf?.rmse_3d_mm === 'number' && typeof urdf?.uncalibrated === 'number') {
     const on = JUDGED_ON[summary.deployed.judged_on] ?? JUDGED_ON['the fit'];
-    return {before: urdf.uncalibrated, after: urdf.rmse_3d_mm, on, best: urdf.model};
+    return {before: urdf.uncalibrated, after: urdf.rmse_3d_mm, compensated: summary.deployed.compensated?.rmse_3d_mm, on, best: urdf.model};
   }
   const best = bestModel(summary);
   const sources = [
@@ -35,6 +35,15 @@ export function judgedErrors(summary) {
   return null;
 }
 
+/** Errors by `validate` into the same folder, where the recording is another one and nothing is wrong with it. */
+function onAnotherRecording(validation) {
+  const figures = validation?.rmse_3d_mm;
+  const after = figures?.urdf ?? figures?.calibrated;
+  if (typeof figures?.uncalibrated !== 'number' || typeof after !== 'number') return null;
+  if (validation.own_recording || (validation.mistakes ?? []).length > 0) return null;
+  return {before: figures.uncalibrated, after, compensated: figures.calibrated, on: 'on another recording', better: validation.status === 'better'};
+}
+
 const deployable = (summary) => summary.status === 'converged' && (summary.objections ?? []).length === 0;
 
 /** Joint and leg parameters that the recording could not determine, for the verdict's last words. */
@@ -45,25 +54,38 @@ export function undetermined(summary) {
 }
 
 /**
- * The verdict as {state: 'deploy' | 'check' | 'reject', word, sentence, rest}: the sentence says
+ * The verdict as {state: 'deploy' | 'check' | 'reject', word, sentence, rest, errors}: the sentence says
  * from where to where the errors went and on what data, `rest` what the recording hardly tells.
+ * `validation`: what `validate` wrote into the same folder, if it did.
  */
-export function verdict(summary) {
-  const errors = judgedErrors(summary);
+export function verdict(summary, validation) {
+  const own = judgedErrors(summary);
+  const inFit = !own || own.on === JUDGED_ON['the fit'];
+  const another = onAnotherRecording(validation);
+  const errors = inFit && another ? another : own;
   const from = errors ? `from ${fixed(errors.before)} to ${fixed(errors.after)}\u00a0mm ${errors.on}` : '';
   if (!deployable(summary)) {
     const why = summary.objections?.[0] ?? summary.message ?? summary.status;
-    return {state: 'reject', word: 'Do not deploy', sentence: from ? `The errors went ${from}, but the result must not be trusted.` : 'The result must not be trusted.', rest: why};
+    return {state: 'reject', word: 'Do not deploy', sentence: from ? `The errors went ${from}, but the result must not be trusted.` : 'The result must not be trusted.', rest: why, errors};
+  }
+  if (another && !another.better) {
+    return {state: 'reject', word: 'Do not deploy', sentence: `On another recording the errors went from ${fixed(another.before)} to ${fixed(another.after)}\u00a0mm.`,
+      rest: 'The calibration does not hold there.', errors: another};
   }
   const open = undetermined(summary);
   const rest = open.length === 0
     ? 'The recording determines every identifiable parameter of the model.'
     : `The recording hardly tells ${list(open, 4)}: ${open.length === 1 ? 'this parameter has its most probable value' : 'these parameters have their most probable values'}.`;
+  if (inFit && !another) {
+    return {state: 'check', word: 'Validate before deploying', sentence: errors ? `Calibrated ${from}.` : 'Calibrated.',
+      rest: `Nothing shows yet how well it predicts what it was not estimated from: cross-validate (--kfold 10), and validate on another recording. ${rest}`, errors};
+  }
   const remarks = (summary.remarks ?? []).length > 0;
   return {
     state: remarks ? 'check' : 'deploy',
     word: remarks ? 'Deploy after a look at the remarks' : 'Deploy',
     sentence: errors ? `Calibrated ${from}.` : 'Calibrated.',
     rest,
+    errors,
   };
 }

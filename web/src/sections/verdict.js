@@ -3,7 +3,7 @@ import {h} from '../lib/dom.js';
 import {count, fixed, list, plural, significant} from '../lib/format.js';
 import {countByStatus} from '../lib/parameters.js';
 import {groupTexts, knownNames, spoken} from '../lib/groups.js';
-import {judgedErrors, verdict} from '../lib/verdict.js';
+import {verdict} from '../lib/verdict.js';
 
 function fact(value, unit, what) {
   return h('div', {class: 'fact'}, h('dt', {}, what),
@@ -21,21 +21,21 @@ function linkToFindings(report) {
 }
 
 /** What a controller reaches that corrects elasticity as well; nothing where that is no other model. */
-function compensated(summary) {
-  const {urdf, compensated: both} = summary.deployed ?? {};
-  if (typeof both?.rmse_3d_mm !== 'number' || both.rmse_3d_mm === urdf?.rmse_3d_mm) return null;
-  return fact(fixed(both.rmse_3d_mm), 'mm', 'the same with compensation of elasticity, of which a URDF has none');
+function compensatedFact(errors) {
+  if (typeof errors?.compensated !== 'number' || errors.compensated === errors.after) return null;
+  return fact(fixed(errors.compensated), 'mm', 'the same with compensation of elasticity, of which a URDF has none');
 }
 
-function facts(summary) {
-  const errors = judgedErrors(summary);
+const FIT = /themselves/;
+
+function facts(summary, errors) {
   const counts = countByStatus(summary.parameters ?? [], (summary.legs ?? []).map((leg) => leg.name));
   const held = Object.entries(counts).reduce((sum, [status, n]) => status === 'estimated' ? sum : sum + n, 0);
   const outliers = (summary.outliers ?? []).length;
   return h('dl', {class: 'facts'},
     errors && fact([fixed(errors.before), h('span', {class: 'arrow', 'aria-label': 'to'}, ' → '),
-                    h('strong', {}, fixed(errors.after))], 'mm', `RMSE of the marker distances ${errors.on.includes('held') || errors.on.includes('no part') ? 'on held-out data' : 'on the data of the fit'}`),
-    compensated(summary),
+                    h('strong', {}, fixed(errors.after))], 'mm', `RMSE of the marker distances ${FIT.test(errors.on) ? 'on the data of the fit' : 'on held-out data'}`),
+    compensatedFact(errors),
     fact(count(counts.estimated ?? 0), held ? `of ${count((counts.estimated ?? 0) + held)}` : '', 'joint and leg errors estimated'),
     fact(count(summary.postures), '', `postures, ${plural(summary.markers, 'marker')}`),
     fact(significant(summary.marker_sd_mm, 2), 'mm', 'standard deviation of the noise of a marker coordinate'),
@@ -44,11 +44,11 @@ function facts(summary) {
 
 /** The head of the page: what came out, in one sentence, and the figures behind it. */
 export function verdictSection(report) {
-  const {summary} = report;
+  const {summary, validation} = report;
   if (!summary) return null;
-  const result = verdict(summary);
+  const result = verdict(summary, validation);
   return h('section', {id: 'verdict', 'data-short': 'Verdict', class: `verdict state-${result.state}`, 'aria-labelledby': 'verdict-title'},
     h('h2', {id: 'verdict-title', class: 'verdict-word'}, h('span', {class: 'mark', 'aria-hidden': 'true'}), result.word),
     h('p', {class: 'verdict-sentence'}, result.sentence), h('p', {class: 'verdict-rest'}, result.rest),
-    linkToFindings(report), facts(summary));
+    linkToFindings(report), facts(summary, result.errors));
 }

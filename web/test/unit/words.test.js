@@ -106,6 +106,21 @@ test('remarks ask for a look, objections forbid', () => {
   assert.equal(verdict({status: 'not converged', message: 'out of iterations'}).rest, 'out of iterations');
 });
 
+test('nothing is deployed by the fit alone, and what validate found on another recording counts', () => {
+  const fit = {...good, held_out_rmse_3d_mm: undefined, kfold: undefined};
+  assert.equal(verdict(fit).state, 'check');
+  assert.equal(verdict(fit).word, 'Validate before deploying');
+  const validation = {status: 'better', own_recording: false, mistakes: [], rmse_3d_mm: {uncalibrated: 4, calibrated: 0.2, urdf: 0.5}};
+  const better = verdict(fit, validation);
+  assert.equal(better.state, 'deploy');
+  assert.equal(better.sentence, 'Calibrated from 4.00 to 0.50\u00a0mm on another recording.');
+  assert.equal(better.errors.compensated, 0.2);
+  assert.equal(verdict(fit, {...validation, own_recording: true}).state, 'check');
+  assert.equal(verdict(fit, {...validation, mistakes: ['labels exchanged']}).state, 'check');
+  assert.equal(verdict(good, {...validation, status: 'not better'}).state, 'reject');
+  assert.equal(verdict(good, validation).errors.on, 'on motions that took no part in the estimate');
+});
+
 test('marks of an axis are written as the numbers of the tables', () => {
   assert.deepEqual([0, 1400, -50, -1.5, 0.1 + 0.2, 12345.25, null].map(tick), ['0', '1\u202f400', '−50', '−1.5', '0.3', '12\u202f345.25', '']);
 });
