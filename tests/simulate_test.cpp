@@ -176,14 +176,14 @@ TEST_F(Simulate, AMatchedTruthIsWhatCalibrateFinds) {
 }
 
 TEST_F(Simulate, RefusesWhatIsNotThere) {
-  const auto refused = [&](const std::string& more, const std::string& part) {
+  const auto refused = [&](const std::string& more, const std::string& part, int exit_code = 3) {
     const ProgramResult result = Run("none", more);
-    EXPECT_EQ(result.exit_code, 3) << more;
+    EXPECT_EQ(result.exit_code, exit_code) << more;
     EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
     EXPECT_FALSE(std::filesystem::exists(Folder("none"))) << more;
   };
   refused("--trials upper_sin", "did you mean 'upper_sine'");
-  refused("--marker-noise-mm much", "--marker-noise-mm");
+  refused("--marker-noise-mm much", "--marker-noise-mm", 2);
   refused("--lost-marker NOSE", "NOSE");
   refused("--free", "free");
   refused("--time-step-s 0.003", "hundredth");
