@@ -25,6 +25,7 @@ constexpr double kLoose = 0.5 * M_PI / 180.0, kLooseSlide = 2e-3, kLeftWithoutLo
 constexpr double kOfMedian = 1.4826;  // a normal deviation's sd over its median size
 constexpr int kSteps = 2;             // of Newton's method
 constexpr double kShown = 0.1;        // of the largest displacement
+constexpr std::size_t kFewestShown = 5;
 
 bool IsSliding(const RobotTree& tree, int coordinate) {
   return tree.joints[tree.coordinate_joint[coordinate]].type == JointType::kPrismatic;
@@ -69,13 +70,13 @@ Parabola ParabolaOf(const CalibrationResult& result, const Recording& at, int co
   return {std::move(before), squares, SquaresOf(result, other, options)};
 }
 
-/// By the median size of what is shown.
+/// By the median size of what is shown; 0 where that is in few postures.
 double SdOfShown(const Eigen::VectorXd& moved, const Eigen::ArrayXd& shown) {
   std::vector<double> sizes;
   for (Eigen::Index i = 0; i < moved.size(); ++i) {
     if (shown[i] > 0.0) sizes.push_back(std::abs(moved[i]));
   }
-  return sizes.empty() ? 0.0 : kOfMedian * Median(sizes);
+  return sizes.size() < kFewestShown ? 0.0 : kOfMedian * Median(sizes);
 }
 
 }  // namespace
@@ -123,7 +124,8 @@ std::vector<CoarsePositions> FindCoarsePositions(const CalibrationResult& result
   if (!(at.sum() < std::min(kLeftWithoutSteps, 1.0 - chance) * given.sum())) return {};
   std::erase_if(coarse, [&](CoarsePositions& one) {
     const Eigen::VectorXd by = moved.q.col(one.coordinate) - recording.q.col(one.coordinate);
-    one.off = std::sqrt(by.squaredNorm() / static_cast<double>(by.size()));
+    const auto moved_in = static_cast<double>((by.array() != 0.0).count());
+    one.off = std::sqrt(by.squaredNorm() / std::max(1.0, moved_in));
     return one.off < kLeastOfRounding * one.step / std::sqrt(12.0);
   });
   return coarse;

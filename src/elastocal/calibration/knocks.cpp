@@ -19,6 +19,7 @@ constexpr double kLeastDistance = 1e-3;  // m
 constexpr double kLeastScatters = 3.0;
 constexpr double kLeastInMotion = 2.0;  // of significance: a correlation is known roughly
 constexpr int kMostMoments = 250;       // of motions, that say whether a search is worth its time
+constexpr int kWorthThinning = 4;       // times as many postures
 constexpr double kShareOfStep = 0.7;    // of a step, by few of the moments
 
 std::vector<int> Estimated(const ErrorModel& model, const BaseParameters& base) {
@@ -138,29 +139,40 @@ SplitExperiment StartSearch(const ErrorModel& model, const Recording& recording,
   return search;
 }
 
-/// Fits what is known so far, and looks for a further step.
-DisplacementStep NextStep(const CalibrationOptions& options, SplitExperiment& search) {
+/// Fits what is known so far, and looks for a further step: of each of these sets of clusters.
+std::vector<DisplacementStep> NextSteps(const CalibrationOptions& options,
+                                        const std::vector<std::vector<LabelCluster>>& sets,
+                                        SplitExperiment& search) {
   const FitProblem problem{search.model, search.recording, options,
                            NoiseGroups(search.model, search.recording)};
   const Selection selection = SelectAll(search.model, search.recording);
   search.fit = FitParameters(problem, selection, search.free, search.fit, Robustness::kMoments,
                              kKnockUpdates);
-  return FindLargestStep(problem, selection, search.free, search.fit, search.clusters,
-                         options.outlier_probability);
+  std::vector<DisplacementStep> steps;
+  for (const std::vector<LabelCluster>& clusters : sets) {
+    steps.push_back(FindLargestStep(problem, selection, search.free, search.fit, clusters,
+                                    options.outlier_probability));
+  }
+  return steps;
 }
 
 /// Whether a recording of thousands of moments can have a knock. A step that all of them prove is
-/// as large in every tenth of them, and has a tenth of its significance at least.
+/// about as large in every tenth of them, and has about a tenth of its significance: of its own
+/// cluster, since postures of rest, which are all kept, may make another one's larger.
 bool MayHaveKnock(const ErrorModel& model, const Recording& recording, const BaseParameters& base,
                   const std::vector<LabelCluster>& clusters, const CalibrationOptions& options) {
   const Recording thinned = WithThinnedMotions(recording, kMostMoments);
-  if (thinned.posture_count() == recording.posture_count()) return true;
+  if (kWorthThinning * thinned.posture_count() > recording.posture_count()) return true;
   SplitExperiment search = StartSearch(model, thinned, base, clusters, options);
-  const DisplacementStep step = NextStep(options, search);
+  std::vector<std::vector<LabelCluster>> each;
+  for (const LabelCluster& cluster : clusters) each.push_back({cluster});
   const double share = static_cast<double>(thinned.posture_count()) / recording.posture_count();
-  return step.cluster >= 0 && step.significance > kShareOfStep * share &&
-         step.displacement.norm() >=
-             kShareOfStep * std::max(kLeastDistance, kLeastScatters * step.scatter);
+  const std::vector<DisplacementStep> steps = NextSteps(options, each, search);
+  return std::any_of(steps.begin(), steps.end(), [&](const DisplacementStep& step) {
+    return step.cluster >= 0 && step.significance > kShareOfStep * share &&
+           step.displacement.norm() >=
+               kShareOfStep * std::max(kLeastDistance, kLeastScatters * step.scatter);
+  });
 }
 
 }  // namespace
@@ -175,7 +187,7 @@ std::vector<Knock> FindKnocks(const ErrorModel& model, const Recording& recordin
   SplitExperiment search = StartSearch(model, recording, base, clusters, quick);
   std::vector<Knock> knocks;
   while (static_cast<int>(knocks.size()) < kMaxKnocks) {
-    DisplacementStep step = NextStep(quick, search);
+    DisplacementStep step = NextSteps(quick, {search.clusters}, search).front();
     if (!IsKnock(step, 1.0)) break;
     if (HasMotion(recording)) {
       step = AmongCorrelated(step, search, quick);

@@ -17,6 +17,7 @@ namespace {
 constexpr double kLeastSpread = 5.0;     // N.m or N: standard deviation of static torques ...
 constexpr double kLever = 0.02;          // ... and by how much the weight carried may be aside, m
 constexpr double kLeastReversed = 1.0;   // instead of 5 where sensors follow statics reversed
+constexpr double kLeverReversed = 5e-3;  // instead of 20 mm, where ten postures say so
 constexpr double kCertainSlopeSd = 0.1;  // of a sensor with less spread, in ...
 constexpr std::size_t kManyPairs = 10;   // ... so many postures
 constexpr double kNoSlope = 0.2;
@@ -58,12 +59,13 @@ std::optional<TorqueLine> FitLine(const Pairs& pairs) {
   const TorqueLine line{.slope = (x * y).sum() / x.square().sum(),
                         .correlation = norm > 0.0 ? (x * y).sum() / norm : 0.0};
   // Neither masses nor friction turn torques round, nor does a weight that is aside: it adds a
-  // constant, or something that does not follow statics.
+  // constant, or something that does not follow statics. But where large loads nearly balance
+  // each other, what statics leaves of them may be wrong altogether.
   const bool follows_reversed = line.correlation < -kFollows;
   const bool reversed = follows_reversed && pairs.expected.size() >= kManyPairs &&
                         line.slope < -kLeastSlope && line.slope > -kMostSlope;
   const double least = follows_reversed ? kLeastReversed : kLeastSpread;
-  const double uncertain = reversed ? 0.0 : kLever * pairs.weight;
+  const double uncertain = (reversed ? kLeverReversed : kLever) * pairs.weight;
   if (!(spread >= std::max(least, uncertain))) return std::nullopt;
   return line;
 }

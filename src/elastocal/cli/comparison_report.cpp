@@ -55,15 +55,16 @@ std::string JointTable(const CalibrationComparison& comparison, int most) {
   return table.Render() + MoreRows(static_cast<int>(comparison.joints.size()), rows);
 }
 
-/// Joint by joint, the most significant first, and so within each; `most` rows.
+/// Joint by joint, the most significant first, and so within each; `most` rows, and those of
+/// joints that moved which differ.
 std::string ParameterTable(const CalibrationComparison& comparison, int most) {
   TextTable table({"parameter", "unit", "A", "B", "B - A", "sd", "95 % interval", ""});
   int rows = 0, all = 0;
   for (const JointDifference& joint : comparison.joints) {
     for (const int i : joint.parameters) {
-      if (all++ >= most) continue;
-      ++rows;
       const ParameterDifference& one = comparison.parameters[i];
+      if (all++ >= most && !(joint.moved && one.significant())) continue;
+      ++rows;
       const auto& [factor, unit] = ScaleOf(one.unit);
       const double sd = factor * one.sd;
       table.Add({one.name, unit, RoundedTo(factor * one.a, sd), RoundedTo(factor * one.b, sd),
@@ -196,9 +197,12 @@ std::string DescribeComparison(const CalibrationEstimate& a, const CalibrationEs
         "  B - A is what is left where markers that stayed on their links are laid on each other: "
         "it need not be B less A\n";
   }
-  text += verbose
-              ? NotComparedText(comparison)
-              : fmt::format("  {} parameters are not compared\n", comparison.not_compared.size());
+  if (verbose) {
+    text += NotComparedText(comparison);
+  } else if (!comparison.not_compared.empty()) {
+    text += fmt::format("  parameters that are not compared: {}; why: --verbose\n",
+                        comparison.not_compared.size());
+  }
   if (!comparison.markers.empty()) text += "\n" + DescribeMarkers(comparison.markers);
   return text;
 }

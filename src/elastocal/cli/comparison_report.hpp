@@ -9,8 +9,8 @@
 
 namespace elastocal::cli {
 
-/// What a person should read of a comparison: joints, parameters by significance, what could not be
-/// compared, the conclusion. Degrees and mm.
+/// What a person should read of a comparison: the conclusion, joints and parameters by significance
+/// (the first ten and what moved; `verbose`: all), what could not be compared. Degrees and mm.
 std::string DescribeComparison(const CalibrationEstimate& a, const CalibrationEstimate& b,
                                const CalibrationComparison& comparison,
                                const ComparisonOptions& options, bool verbose);

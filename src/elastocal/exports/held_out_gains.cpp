@@ -96,8 +96,9 @@ HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& g
   const RecordedModel recorded = MakeRecordedModel(project, {}, measured);
   CheckApplies(robot.calibration, project, recorded.model);
   std::vector<std::string> warnings;
-  const std::vector<MarkerMeasurement> places = OpenMarkerPlaces(
-      RecordedAssumptions(robot).marker_places, project, measured.calibration, {}, warnings);
+  const std::vector<MarkerMeasurement> places =
+      OpenMarkerPlaces(RecordedAssumptions(robot).marker_places, project, measured.calibration,
+                       recorded.knocks, warnings);
   GainOptions options = given;
   options.known_markers = MeasuredMarkers(
       places, recorded.model,

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kLeastMotion = 0.05;  // rad or m: range of a joint that can be wrong
 constexpr double kLeastPeak = 0.9;     // what is right correlates well
+constexpr double kFitsAsItIs = 0.999;  // correlation of a log that only noise keeps from one
 constexpr double kFarBetter = 0.25;    // of what a correlation lacks to one is left
 constexpr double kLeastFrozen_s = 2.0;
 constexpr double kJumpSpreads_s = 1.2;       // the filter spreads the jump at either end
@@ -155,6 +156,7 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
                                          const std::optional<double>& expected_lag_s,
                                          const ClockOptions& options, double peak) {
   const double rate_hz = trajectories.rate_hz;
+  if (peak > kFitsAsItIs) return std::nullopt;
   const double least_peak = std::max(kLeastPeak, 1.0 - kFarBetter * (1.0 - peak));
   std::vector<Candidate> candidates;
   const std::vector<int> columns = MovingColumns(robot, markers, log, coordinates);

@@ -2,11 +2,27 @@
 #include "elastocal/measurement/thinned_motions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
+
+namespace {
+
+/// How far apart moments are of which `most` or fewer are kept.
+int StepOver(int moments, int most) { return std::max(1, (moments + most - 1) / most); }
+
+bool Differ(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, int row) {
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    const double x = a(row, j), y = b(row, j);
+    if (x != y && !(std::isnan(x) && std::isnan(y))) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 Recording WithThinnedMotions(const Recording& recording, int most) {
   if (recording.trials.empty()) return EvenlyThinned(recording, most);
@@ -15,13 +31,32 @@ Recording WithThinnedMotions(const Recording& recording, int most) {
   };
   int moments = 0;
   for (int i = 0; i < recording.posture_count(); ++i) moments += moves(i) ? 1 : 0;
-  const int step = std::max(1, (moments + most - 1) / most);
+  const int step = StepOver(moments, most);
   std::vector<int> kept;
   int moment = 0;
   for (int i = 0; i < recording.posture_count(); ++i) {
     if (!moves(i) || moment++ % step == 0) kept.push_back(i);
   }
   return SelectPostures(recording, kept);
+}
+
+std::vector<int> FewPostures(const Recording& recorded, const Recording& corrected, int most) {
+  const int postures = recorded.posture_count();
+  if (recorded.trials.empty() || corrected.posture_count() != postures) return {};
+  std::vector<int> kept, changed, others;
+  for (int i = 0; i < postures; ++i) {
+    const bool rests = !recorded.trials[Size(recorded.trial[Size(i)])].of_motion();
+    const bool differs =
+        Differ(recorded.q, corrected.q, i) || Differ(recorded.markers, corrected.markers, i);
+    (rests ? kept : differs ? changed : others).push_back(i);
+  }
+  for (const std::vector<int>& moments : {changed, others}) {
+    const auto step = Size(StepOver(static_cast<int>(moments.size()), most));
+    for (std::size_t i = 0; i < moments.size(); i += step) kept.push_back(moments[i]);
+  }
+  if (4 * kept.size() >= Size(postures)) return {};
+  std::sort(kept.begin(), kept.end());
+  return kept;
 }
 
 }  // namespace elastocal

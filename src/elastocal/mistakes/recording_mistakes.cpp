@@ -34,7 +34,7 @@ constexpr double kLeftByLeavingOut = 0.3;
 constexpr double kNoWorse = 1.2;       // of what is left without the postures
 constexpr double kLikeTheMost = 0.95;  // of the widest prior
 constexpr int kMostMoments = 120;      // of motions, by which a suspicion is tried first
-constexpr double kNotHalf = 0.75;      // of their error is left: nor is it half of that of all
+constexpr double kMostLeftByFew = 0.75;
 
 /// The signs of the joints that move in these postures, undone in all.
 std::vector<TriedCorrection> SignsIn(const std::vector<int>& postures, const RobotTree& tree,
@@ -292,23 +292,20 @@ std::vector<RecordingMistake> FindMistakesBy(
     const Project& project, std::optional<std::uint64_t> seed, const Measurements& as_recorded,
     double error, const std::function<double(const RecordedModel&, const Recording&)>& error_of) {
   std::optional<RecordedModel> robot;  // made when there is a suspicion
-  const auto by_few = [&](const Recording& recording) {
-    return error_of(*robot, WithThinnedMotions(recording, kMostMoments));
+  const Recording& recorded = as_recorded.calibration;
+  // A fit to a wrong recording hardly comes to rest: minutes, where there are thousands of moments.
+  const auto hardly_helps = [&](const Recording& corrected) {
+    const std::vector<int> few = FewPostures(recorded, corrected, kMostMoments);
+    return !few.empty() && error_of(*robot, SelectPostures(corrected, few)) >
+                               kMostLeftByFew * error_of(*robot, SelectPostures(recorded, few));
   };
-  double before = 0.0;  // by few moments
-  const bool many = WithThinnedMotions(as_recorded.calibration, kMostMoments).posture_count() <
-                    as_recorded.calibration.posture_count();
   const auto error_of_corrected = [&](const Recording& corrected) {
     if (!robot) {
       Measurements measured = as_recorded;
       robot = MakeRecordedModel(project, seed, measured, KnockSearch::kNone);
-      if (many) before = by_few(as_recorded.calibration);
     }
     try {
-      // What is wrong hardly comes to rest: minutes, where there are thousands of moments.
-      if (many && by_few(corrected) > kNotHalf * before) {
-        return std::numeric_limits<double>::infinity();
-      }
+      if (hardly_helps(corrected)) return std::numeric_limits<double>::infinity();
       return error_of(*robot, corrected);
     } catch (const InputError&) {
       return std::numeric_limits<double>::infinity();

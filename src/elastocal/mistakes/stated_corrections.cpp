@@ -162,22 +162,24 @@ std::set<std::string> MarkersBeyond(const Project& project, int coordinate) {
   return beyond;
 }
 
-bool SeesAny(const Recording& recording, int trial, const std::set<std::string>& markers) {
-  for (int i = 0; i < recording.posture_count(); ++i) {
-    if (recording.trial[Size(i)] != trial) continue;
-    for (int m = 0; m < recording.marker_count(); ++m) {
-      if (markers.contains(recording.marker_names[Size(m)]) && Seen(recording, i, m)) return true;
-    }
+bool SeesAny(const Recording& recording, int posture, const std::set<std::string>& markers) {
+  for (int m = 0; m < recording.marker_count(); ++m) {
+    const bool wanted = markers.contains(recording.marker_names[Size(m)]);
+    if (wanted && Seen(recording, posture, m)) return true;
   }
   return false;
 }
 
-/// Names of the trials that move a joint and see a marker that it moves.
+/// Names of the trials that move a joint while a marker is seen that it moves.
 std::vector<std::string> TrialsThatShow(const Recording& recording, int coordinate,
                                         const std::set<std::string>& markers) {
+  std::vector<int> seen;
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    if (SeesAny(recording, i, markers)) seen.push_back(i);
+  }
   std::vector<std::string> names;
-  for (const int trial : AllTrialsThatMove(recording, coordinate)) {
-    if (SeesAny(recording, trial, markers)) names.push_back(recording.trials[Size(trial)].name);
+  for (const int trial : AllTrialsThatMove(SelectPostures(recording, seen), coordinate)) {
+    names.push_back(recording.trials[Size(trial)].name);
   }
   return names;
 }
@@ -204,7 +206,7 @@ std::string DescribeUnconfirmed(const StatedCorrection& correction,
   return fmt::format(
       "{}: its positions are corrected in all trials for validation that show it ({}), and not in "
       "those of the estimate ({}): nothing shows which of the two the robot's log is like now; "
-      "record one more trial for validation that moves it",
+      "record one more trial for validation that moves it in sight of the cameras",
       correction.joint, fmt::join(held_out, ", "), fmt::join(of_estimate, ", "));
 }
 

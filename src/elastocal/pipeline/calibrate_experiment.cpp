@@ -127,19 +127,11 @@ struct Work {
 
 /// By the contents of its files, whatever they are called this time.
 void WarnOfSameRecording(Work& work) {
+  const std::filesystem::path calibration = FindCalibrationFiles(work.options.prior).calibration;
+  if (!IsOwnRecording(calibration, InputFiles(work.given, work.recordings))) return;
+  const std::string warning = CountsTwice(calibration.string());
   std::vector<std::string>& warnings = work.run.warnings;
-  std::vector<std::string> of_validation;
-  const std::filesystem::path& prior = work.options.prior;
-  if (!WarnOfOwnRecording(FindCalibrationFiles(prior).calibration,
-                          InputFiles(work.given, work.recordings), of_validation)) {
-    return;
-  }
-  const bool told = std::any_of(warnings.begin(), warnings.end(), [](const std::string& one) {
-    return one.ends_with("which counts twice");
-  });
-  if (!told) {
-    warnings.push_back(prior.string() + ": made from the same recording, which counts twice");
-  }
+  if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(warning);
 }
 
 /// What is estimated: elasticity and causes as the data decide or, not in the paper, as an earlier

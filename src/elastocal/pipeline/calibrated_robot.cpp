@@ -154,8 +154,7 @@ std::vector<fs::path> RecordedFiles(const CalibratedRobot& robot) {
   return files;
 }
 
-bool WarnOfOwnRecording(const fs::path& calibration, const std::vector<fs::path>& files,
-                        std::vector<std::string>& warnings) {
+bool IsOwnRecording(const fs::path& calibration, const std::vector<fs::path>& files) {
   const fs::path record = FolderOf(calibration) / "runs.json";
   std::error_code error;
   if (!fs::exists(record, error)) return false;
@@ -165,10 +164,13 @@ bool WarnOfOwnRecording(const fs::path& calibration, const std::vector<fs::path>
     if (inputs[i].file.filename() != "experiment.yaml") used.insert(inputs[i].sha256);
   }
   const std::vector<InputRecord> now = RecordInputs(files);
-  if (std::none_of(now.begin(), now.end(),
-                   [&](const InputRecord& file) { return used.contains(file.sha256); })) {
-    return false;
-  }
+  return std::any_of(now.begin(), now.end(),
+                     [&](const InputRecord& file) { return used.contains(file.sha256); });
+}
+
+bool WarnOfOwnRecording(const fs::path& calibration, const std::vector<fs::path>& files,
+                        std::vector<std::string>& warnings) {
+  if (!IsOwnRecording(calibration, files)) return false;
   warnings.emplace_back(
       "the calibration was made from this recording: it says nothing of another day; take another "
       "recording");

@@ -38,8 +38,12 @@ Assumptions RecordedAssumptions(const CalibratedRobot& robot);
 std::vector<std::filesystem::path> RecordedFiles(const CalibratedRobot& robot);
 
 /// Whether the calibration (its calibration.yaml) was made from one of these files, as the record
-/// beside it has their checksums; files that describe the robot and experiments do not count. Adds
-/// a warning then. False where there is no record.
+/// beside it has their checksums; files that describe the robot and experiments do not count. False
+/// where there is no record.
+bool IsOwnRecording(const std::filesystem::path& calibration,
+                    const std::vector<std::filesystem::path>& files);
+
+/// The same, and adds a warning then.
 bool WarnOfOwnRecording(const std::filesystem::path& calibration,
                         const std::vector<std::filesystem::path>& files,
                         std::vector<std::string>& warnings);

@@ -297,6 +297,10 @@ std::string DescribeWorseUpdate(const std::filesystem::path& calibration,
       stored.source, 1e3 * before, 1e3 * updated);
 }
 
+std::string CountsTwice(const std::string& source) {
+  return source + ": made from the same recording, which counts twice";
+}
+
 std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibration, double days,
                                           const Measurements& measured,
                                           std::optional<std::uint64_t> seed, Project& project) {
@@ -304,7 +308,7 @@ std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibrati
   const EarlierFit fit = FitAfterEarlier(calibration, days, measured, seed, {}, project);
   std::vector<std::string> warnings;
   if (fit.stored.recording == measured.calibration.source) {
-    warnings.push_back(fit.stored.source + ": made from the same recording, which counts twice");
+    warnings.push_back(CountsTwice(fit.stored.source));
   }
   for (std::string& text : DescribeForgotten(fit.check, fit.stored.source)) {
     warnings.push_back(std::move(text));

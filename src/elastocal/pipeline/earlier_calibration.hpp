@@ -76,6 +76,9 @@ std::vector<std::string> DescribeForgotten(const JointCheck& check, const std::s
 /// That it is less exact than it says, a sentence; none where that may be chance.
 std::vector<std::string> DescribeWidened(const JointCheck& check, const std::string& source);
 
+/// That it was made from the recording that is calibrated now, a sentence.
+std::string CountsTwice(const std::string& source);
+
 /// Takes an earlier calibration as the prior of the project's estimates. What it says of joints
 /// that seem to have moved since counts as little as what is known of a new robot. Returns what a
 /// user should know of it, a sentence each. Throws InputError as FitAfterEarlier, and for a

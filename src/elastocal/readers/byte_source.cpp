@@ -63,6 +63,7 @@ std::vector<std::filesystem::path> BagPieces(const std::filesystem::path& folder
     if (!std::filesystem::is_regular_file(piece, error)) {
       item.Fail("there is no file " + piece.string());
     }
+    piece = piece.lexically_normal();
     if (std::ranges::find(pieces, piece) != pieces.end()) {
       item.Fail("lists " + piece.string() + " twice; each file of the bag once was expected");
     }

@@ -40,8 +40,8 @@ function onAnotherRecording(validation) {
   const figures = validation?.rmse_3d_mm;
   const after = figures?.urdf ?? figures?.calibrated;
   if (typeof figures?.uncalibrated !== 'number' || typeof after !== 'number') return null;
-  if (validation.own_recording || (validation.mistakes ?? []).length > 0) return null;
-  return {before: figures.uncalibrated, after, compensated: figures.calibrated, on: 'on another recording', better: validation.status === 'better'};
+  if (validation.own_recording || validation.status === 'not converged' || (validation.mistakes ?? []).length > 0) return null;
+  return {before: figures.uncalibrated, after, compensated: figures.calibrated, on: 'on another recording', better: validation.status === 'better', plausible: validation.status !== 'implausible'};
 }
 
 const deployable = (summary) => summary.status === 'converged' && (summary.objections ?? []).length === 0;
@@ -70,7 +70,7 @@ export function verdict(summary, validation) {
   }
   if (another && !another.better) {
     return {state: 'reject', word: 'Do not deploy', sentence: `On another recording the errors went from ${fixed(another.before)} to ${fixed(another.after)}\u00a0mm.`,
-      rest: 'The calibration does not hold there.', errors: another};
+      rest: another.plausible ? 'The calibration does not help there.' : 'That is more than an uncalibrated robot should have: recording, project and calibration do not belong together.', errors: another};
   }
   const open = undetermined(summary);
   const rest = open.length === 0
