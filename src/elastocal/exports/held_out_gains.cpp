@@ -88,7 +88,7 @@ std::set<std::string> MeasuredMarkers(const std::vector<MarkerMeasurement>& plac
 
 }  // namespace
 
-HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& given) {
+HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& options) {
   Project project = robot.project;
   CheckHasMarkers(project);
   project.elasticity = ElasticityOf(robot.calibration, project);
@@ -99,8 +99,8 @@ HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& g
   const std::vector<MarkerMeasurement> places =
       OpenMarkerPlaces(RecordedAssumptions(robot).marker_places, project, measured.calibration,
                        recorded.knocks, warnings);
-  GainOptions options = given;
-  options.known_markers = MeasuredMarkers(
+  GainOptions knowing = options;
+  knowing.known_markers = MeasuredMarkers(
       places, recorded.model,
       ErrorsByName(recorded.model, robot.calibration.joint_errors, robot.calibration.externals));
   HeldOutGains gains;
@@ -111,14 +111,14 @@ HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& g
                                   measured.validation.trials.size());
     gains.study = StudyGains(
         {StoredSplit(recorded, std::move(measured), robot.calibration, options.with_loads)},
-        project.calibration, options);
+        project.calibration, knowing);
   } else {
     gains.judged_on =
         fmt::format("{} postures, each by an estimate without the fifth that it is in",
                     measured.calibration.posture_count());
     gains.study =
         StudyGains(FoldSplits(recorded, measured.calibration, places, project.calibration),
-                   project.calibration, options);
+                   project.calibration, knowing);
   }
   return gains;
 }

@@ -15,7 +15,7 @@ Recording RestAndMotion(int moments) {
   Recording recording;
   recording.trials = {{"rest", TrialKind::kCalibration, {}}, {"swing", TrialKind::kSine, {}}};
   recording.trial.assign(10, 0);
-  recording.trial.resize(static_cast<std::size_t>(10 + moments), 1);
+  recording.trial.resize(10 + static_cast<std::size_t>(moments), 1);
   recording.marker_names = {"A"};
   recording.q = Eigen::MatrixXd::Zero(10 + moments, 1);
   recording.markers = Eigen::MatrixXd::Zero(10 + moments, 3);
