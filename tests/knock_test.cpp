@@ -7,7 +7,10 @@
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/calibration/knocks.hpp"
 #include "elastocal/pipeline/cross_validate.hpp"
+#include "elastocal/project/project.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/standing_robot.hpp"
+#include "tests/test_files.hpp"
 
 namespace elastocal {
 namespace {
@@ -109,6 +112,34 @@ TEST(Knock, OfTheWaistIsNotTakenForOneOfTheOthers) {
   const int middle = 3 * kPostures + kPostures / 2;
   experiment.Push("WAIST", middle, recording);
   ExpectOneKnock(experiment.Find(recording), "WAIST", middle - 1, middle);
+}
+
+// Whether there may be one, few of the moments say first.
+TEST(Knock, IsFoundAmongThousandsOfMoments) {
+  const Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  const BaseParameters base = FindBaseParameters(model, project.identifiability);
+  constexpr int kMoments = 1200, kFirstAfter = 701;
+  const MarkerCluster& cluster = project.clusters.back();
+  Eigen::VectorXd pushed = Eigen::VectorXd::Zero(model.parameter_count());
+  for (const int m : cluster.markers) {
+    const int x = FindParameter(model.parameters, "marker." + project.markers[m].name + ".x");
+    pushed.segment<3>(x) = kPush;
+  }
+  const auto record = [&](const Eigen::VectorXd& errors) {
+    Recording recording = MakeSyntheticRecording(model, errors, {.postures = kMoments});
+    recording.trials = {{"swing", TrialKind::kSine, {project.chains.front().name}}};
+    recording.trial.assign(kMoments, 0);
+    return recording;
+  };
+  std::vector<LabelCluster> clusters;
+  for (const MarkerCluster& of : project.clusters) clusters.push_back({of.name, of.markers});
+  Recording recording = record(Eigen::VectorXd::Zero(model.parameter_count()));
+  EXPECT_TRUE(FindKnocks(model, recording, base, clusters, {}).empty());
+  recording.markers.bottomRows(kMoments - kFirstAfter) =
+      record(pushed).markers.bottomRows(kMoments - kFirstAfter);
+  ExpectOneKnock(FindKnocks(model, recording, base, clusters, {}), cluster.name, kFirstAfter - 1,
+                 kFirstAfter);
 }
 
 TEST(Knock, OfTwoClustersAreBothFound) {
