@@ -89,12 +89,9 @@ TEST(LogMistakes, PositionsTellWhichOfTwoParallelAxesTurnsTheOtherWay) {
     for (const int pitch : {2, 3}) {  // of hip and knee
       ScriptedTrial played = clean;
       played.log.positions.col(pitch) *= -1.0;
-      const auto find = [&](double peak) {
-        return FindLogMistake(robot, AllMarkers(robot), {0}, SmoothLog(played.log, {}),
-                              {0, 1, 2, 3, 4, 5}, MarkerSpeeds(markers), markers, 0.0, {}, peak);
-      };
-      EXPECT_FALSE(find(0.9992)) << "nothing is wrong with a log that fits so well as it is";
-      const auto found = find(0.9);
+      const auto found =
+          FindLogMistake(robot, AllMarkers(robot), {0}, SmoothLog(played.log, {}),
+                         {0, 1, 2, 3, 4, 5}, MarkerSpeeds(markers), markers, 0.0, {}, 0.9);
       ASSERT_TRUE(found);
       EXPECT_EQ(NameOf(*found, clean.log.names), "sign:" + clean.log.names[pitch]) << seed;
     }
