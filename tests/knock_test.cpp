@@ -164,26 +164,31 @@ TEST(Knock, IsNotSeenWhereThereWasNone) {
   }
 }
 
+// Two of twelve robots seemed to have a knocked foot, by 2 mm upwards where the robot changes feet.
+TEST(Knock, IsNoErrorOfTheTorques) {
+  for (const std::uint64_t seed : {30, 40}) {
+    KnockExperiment experiment(seed);
+    experiment.options.torque_sd = 2.0;
+    EXPECT_TRUE(experiment.Find(experiment.Clean()).empty()) << seed;
+  }
+}
+
 // A rigid robot has no other explanation for a foot that sinks when it bears the robot alone.
 TEST(Knock, IsNoLegThatGivesWayWhereARigidRobotIsEstimated) {
-  for (const std::uint64_t seed : {15, 17}) {  // of 11 to 18, those that a rigid search accuses
+  for (const std::uint64_t seed : {15, 17}) {
     const KnockExperiment experiment(seed);
     Project project = experiment.robot.project;
     project.elasticity = {.torsion = std::vector<std::string>(),
                           .bending = std::vector<std::string>(),
                           .base = false};
-    Measurements measured;
-    measured.calibration = experiment.Clean();
-    const ErrorModel rigid = MakeProjectModel(project, measured.calibration.trials);
+    Recording recording = experiment.Clean();
+    const ErrorModel rigid = MakeProjectModel(project, recording.trials);
     const BaseParameters base = FindBaseParameters(rigid, project.identifiability);
-    EXPECT_EQ(FindKnocks(rigid, measured.calibration, base, experiment.clusters, {}).size(), 1u);
-    const RecordedModel robot = MakeRecordedModel(project, {}, measured);
-    EXPECT_FALSE(robot.model.elasticity.base);
-    EXPECT_TRUE(robot.knocks.empty()) << robot.knocks[0].cluster;
-    measured.calibration = experiment.Clean();
+    EXPECT_TRUE(FindKnocks(rigid, recording, base, experiment.clusters, {}).empty());
     const int middle = kPostures + kPostures / 2;
-    experiment.Push("LHAND", middle, measured.calibration);
-    ExpectOneKnock(MakeRecordedModel(project, {}, measured).knocks, "LHAND", middle - 1, middle);
+    experiment.Push("LHAND", middle, recording);
+    ExpectOneKnock(FindKnocks(rigid, recording, base, experiment.clusters, {}), "LHAND", middle - 1,
+                   middle);
   }
 }
 

@@ -15,7 +15,7 @@ namespace elastocal {
 namespace {
 
 constexpr int kLeastPostures = 3;    // on either side
-constexpr double kLargestSd = 5e-4;  // m, of a displacement that is believed
+constexpr double kLeastLeft = 0.05;  // of what is known of a displacement, beside all else
 /// What a displacement of one cluster, in the axes of its link, does in one posture.
 struct ShiftEffect {
   Eigen::Vector3d score = Eigen::Vector3d::Zero();        ///< A' Q r
@@ -117,15 +117,22 @@ Linearised Linearise(const FitProblem& problem, const Selection& selection,
   return linear;
 }
 
-/// The displacement in those directions in which it is known; elsewhere none.
+/// About a step, if nothing were unknown beside it but where the cluster is on its link.
+Eigen::Matrix3d BesideItsMean(const Eigen::Matrix3d& after, const Eigen::Matrix3d& all) {
+  return after - after * all.ldlt().solve(after);
+}
+
+/// The displacement in those directions of which the other unknowns leave something; elsewhere
+/// none. `information`: beside all of them; `beside_mean`: beside the cluster's place only.
 Eigen::Vector3d KnownDisplacement(const Eigen::Matrix3d& information,
+                                  const Eigen::Matrix3d& beside_mean,
                                   const Eigen::Vector3d& score) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(information);
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
     const double known = directions.eigenvalues()[i];  // sd^-2
-    if (!(known > 1.0 / (kLargestSd * kLargestSd))) continue;
     const Eigen::Vector3d along = directions.eigenvectors().col(i);
+    if (!(known > kLeastLeft * along.dot(beside_mean * along))) continue;
     displacement += along.dot(score) / known * along;
   }
   return displacement;
@@ -139,6 +146,8 @@ DisplacementStep BestStep(const Linearised& linear, int cluster, const Eigen::Ve
   best.cluster = cluster;
   ShiftEffect after;
   after.cross.setZero(3, explained.size());
+  Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
+  for (const auto& [posture, effect] : effects) all += effect.information;
   const int count = static_cast<int>(effects.size());
   int seen = 0;
   for (auto at = effects.rbegin(); at != effects.rend(); ++at) {
@@ -151,7 +160,8 @@ DisplacementStep BestStep(const Linearised& linear, int cluster, const Eigen::Ve
     const Eigen::MatrixXd W = linear.factor.matrixL().solve(after.cross.transpose());
     const Eigen::Matrix3d information = after.information - W.transpose() * W;
     const Eigen::Vector3d score = after.score - W.transpose() * explained;
-    const Eigen::Vector3d displacement = KnownDisplacement(information, score);
+    const Eigen::Vector3d displacement =
+        KnownDisplacement(information, BesideItsMean(after.information, all), score);
     const double gain = score.dot(displacement);
     if (!(gain > best.gain)) continue;
     best = {cluster, at->first, std::next(at)->first, displacement, gain, 0.0, 0.0};

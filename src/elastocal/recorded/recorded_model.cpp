@@ -100,27 +100,6 @@ void CheckFreeRoot(const ErrorModel& model, const Recording& recording) {
       recording.source, model.tree.links[model.markers[0].link].name));
 }
 
-/// With all elasticity of a recording of trials, whatever is estimated: a leg that gives way when
-/// it bears the robot alone is no knock of its foot's markers.
-std::vector<Knock> FindKnocksBesideElasticity(const Project& project,
-                                              const IdentifiabilityOptions& options,
-                                              const Recording& recording,
-                                              const RecordedModel& robot) {
-  const std::vector<LabelCluster> clusters = SeenClusters(project, recording);
-  const ElasticityChoice& chosen = project.elasticity;
-  if (chosen.base && !chosen.torsion && !chosen.bending) {
-    return FindKnocks(robot.model, recording, robot.base, clusters, project.calibration);
-  }
-  Project elastic = project;
-  elastic.elasticity.base = true;
-  elastic.elasticity.torsion.reset();
-  elastic.elasticity.bending.reset();
-  const ErrorModel model =
-      SelectMarkers(MakeProjectModel(elastic, recording.trials), recording.marker_names);
-  return FindKnocks(model, recording, FindBaseParameters(model, options), clusters,
-                    project.calibration);
-}
-
 std::string DescribeKnock(const Knock& knock, const Recording& recording) {
   if (recording.trials.empty()) {
     return fmt::format(
@@ -165,9 +144,10 @@ RecordedModel MakeRecordedModel(const Project& project, std::optional<std::uint6
   result.contradictory = CheckTorques(result.model, project.calibration, measured);
   result.base = FindBaseParameters(result.model, options);
   if (search == KnockSearch::kAll) {
-    result.knocks = recording.trials.empty()
-                        ? FindMovedMarkers(recording, SeenClusters(project, recording))
-                        : FindKnocksBesideElasticity(project, options, recording, result);
+    const std::vector<LabelCluster> clusters = SeenClusters(project, recording);
+    result.knocks = recording.trials.empty() ? FindMovedMarkers(recording, clusters)
+                                             : FindKnocks(result.model, recording, result.base,
+                                                          clusters, project.calibration);
   }
   if (!result.knocks.empty()) {
     for (const Knock& knock : result.knocks) {
