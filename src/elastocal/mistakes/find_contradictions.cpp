@@ -12,6 +12,7 @@
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/measurement/thinned_motions.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
@@ -277,6 +278,22 @@ bool MayBeInertia(const RecordingFault& fault, const Recording& recording) {
          recording.trials[Size(fault.trial)].of_motion() && std::abs(fault.size) < kMostByInertia;
 }
 
+/// A cluster that was knocked between trials or within one, as all of them together tell; empty:
+/// none. The trials of the estimate need not: where each shows other limbs, a waist that was
+/// knocked between them moves all that they show.
+std::string KnockOfAll(const Project& project, const RecordedModel& robot, const Recording& all) {
+  const std::vector<Knock> knocks =
+      FindKnocks(robot.model, all, robot.base, SeenClusters(project, all), project.calibration);
+  if (knocks.empty()) return "";
+  const Knock& knock = knocks.front();
+  return fmt::format(
+      "trials for calibration and for validation contradict each other: cluster {} lies {:.1f} mm "
+      "elsewhere from {} on, against {} and before: it was knocked. Measure again what was "
+      "recorded before or after it",
+      knock.cluster, 1e3 * knock.distance, DescribePosture(all, knock.posture),
+      DescribePosture(all, knock.last_before));
+}
+
 /// Whether held-out trials are suspiciously worse than those of the estimate, and by how much.
 Contrast ContrastOf(const Project& project, const Recording& recording,
                     const ModelComparison& comparison, const ErrorTable& held_out_table) {
@@ -359,6 +376,8 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
             ExplainFault(general, project).text +
             OrInThoseOfTheEstimate(faults.front(), all, recording)};
   }
+  const std::string knock = KnockOfAll(project, robot, all);
+  if (!knock.empty()) return {knock};
   if (!(contrast.ratio() > kContradicted)) return {};
   char text[200];
   std::snprintf(text, sizeof text,
