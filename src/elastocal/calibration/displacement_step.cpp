@@ -15,7 +15,10 @@ namespace elastocal {
 namespace {
 
 constexpr int kLeastPostures = 3;    // on either side
-constexpr double kLeastLeft = 0.05;  // of what is known of a displacement, beside all else
+constexpr double kLargestSd = 5e-4;  // m, of a displacement that is believed
+constexpr int kAtAChange = 3;        // postures of a change of feet
+constexpr double kLeastLeft = 0.05;  // there, of what is known of a displacement
+
 /// What a displacement of one cluster, in the axes of its link, does in one posture.
 struct ShiftEffect {
   Eigen::Vector3d score = Eigen::Vector3d::Zero();        ///< A' Q r
@@ -30,6 +33,7 @@ using ShiftEffects = std::map<int, ShiftEffect>;
 /// A fit, linearised: the waist of each posture is eliminated by Q.
 struct Linearised {
   std::vector<ShiftEffects> effects;   ///< by cluster
+  std::vector<int> changes;            ///< postures from which on the robot has other feet down
   Eigen::LLT<Eigen::MatrixXd> factor;  ///< of the information about all other unknowns
   Eigen::VectorXd gradient;            ///< of these, J' Q r
   double squares = 0.0;                ///< sum of squared residuals
@@ -75,6 +79,17 @@ double Freedom(const BodyResiduals& body, const Selection& selection, int postur
   return freedom;
 }
 
+std::vector<int> ChangesOfFeet(const Recording& recording) {
+  std::vector<int> changes;
+  const auto support = [&](int i) -> const std::vector<int>& {
+    return recording.trials[recording.trial[i]].support;
+  };
+  for (int i = 1; i < recording.posture_count(); ++i) {
+    if (support(i) != support(i - 1)) changes.push_back(i);
+  }
+  return changes;
+}
+
 Linearised Linearise(const FitProblem& problem, const Selection& selection,
                      const std::vector<int>& free, const Fit& fit,
                      const std::vector<LabelCluster>& clusters) {
@@ -86,6 +101,7 @@ Linearised Linearise(const FitProblem& problem, const Selection& selection,
   linear.effects.resize(clusters.size());
   linear.factor.compute(equations.information());
   linear.gradient = equations.gradient();
+  linear.changes = ChangesOfFeet(problem.recording);
   linear.squares = 2.0 * CostOf(residuals.body);
   linear.freedom = Freedom(residuals.body, selection, problem.recording.posture_count());
   for (int b = 0; b < residuals.body.body_count(); ++b) {
@@ -122,20 +138,26 @@ Eigen::Matrix3d BesideItsMean(const Eigen::Matrix3d& after, const Eigen::Matrix3
   return after - after * all.ldlt().solve(after);
 }
 
-/// The displacement in those directions of which the other unknowns leave something; elsewhere
-/// none. `information`: beside all of them; `beside_mean`: beside the cluster's place only.
-Eigen::Vector3d KnownDisplacement(const Eigen::Matrix3d& information,
-                                  const Eigen::Matrix3d& beside_mean,
+/// The displacement in those directions in which it is known; elsewhere none. `least`: information
+/// that it has to exceed.
+Eigen::Vector3d KnownDisplacement(const Eigen::Matrix3d& information, const Eigen::Matrix3d& least,
                                   const Eigen::Vector3d& score) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(information);
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
   for (int i = 0; i < 3; ++i) {
     const double known = directions.eigenvalues()[i];  // sd^-2
     const Eigen::Vector3d along = directions.eigenvectors().col(i);
-    if (!(known > kLeastLeft * along.dot(beside_mean * along))) continue;
+    if (!(known > 1.0 / (kLargestSd * kLargestSd)) || !(known > along.dot(least * along))) continue;
     displacement += along.dot(score) / known * along;
   }
   return displacement;
+}
+
+/// Whether the robot changes its feet between two postures, or shortly before or after.
+bool IsAtAChange(const std::vector<int>& changes, int last_before, int first_after) {
+  return std::any_of(changes.begin(), changes.end(), [&](int change) {
+    return change > last_before - kAtAChange && change < first_after + kAtAChange;
+  });
 }
 
 /// The best step of one cluster; counts those tried.
@@ -160,8 +182,10 @@ DisplacementStep BestStep(const Linearised& linear, int cluster, const Eigen::Ve
     const Eigen::MatrixXd W = linear.factor.matrixL().solve(after.cross.transpose());
     const Eigen::Matrix3d information = after.information - W.transpose() * W;
     const Eigen::Vector3d score = after.score - W.transpose() * explained;
-    const Eigen::Vector3d displacement =
-        KnownDisplacement(information, BesideItsMean(after.information, all), score);
+    const bool at_change = IsAtAChange(linear.changes, std::next(at)->first, at->first);
+    const Eigen::Matrix3d least =
+        (at_change ? kLeastLeft : 0.0) * BesideItsMean(after.information, all);
+    const Eigen::Vector3d displacement = KnownDisplacement(information, least, score);
     const double gain = score.dot(displacement);
     if (!(gain > best.gain)) continue;
     best = {cluster, at->first, std::next(at)->first, displacement, gain, 0.0, 0.0};

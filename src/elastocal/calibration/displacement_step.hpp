@@ -29,11 +29,12 @@ struct DisplacementStep {
 ///   displacement = (A' P A)^-1 A' P r,   gain = r' P A (A' P A)^-1 A' P r
 ///
 /// so that the displacement is not confused with what joints, markers, feet or the waist of a
-/// posture could explain as well. Directions that P leaves nearly nothing of (less than a twentieth
-/// of the information that there is if nothing else is unknown but where the cluster is on its
-/// link) are not looked at: up and down, for a foot between a trial that lifts it and one that
-/// stands on it, is also what the leg's compliance does, and an error of the loads of a hundredth
-/// of a millimetre would seem a step of two. No side of a step has fewer than three postures.
+/// posture could explain as well. Directions in which it is hardly known (a standard deviation
+/// above 0.5 mm) are not looked at, as errors of the model would seem a step of millimetres. Where
+/// the robot changes its feet, within three postures, loads change as suddenly as a cluster that is
+/// knocked moves: what wrong loads bend would seem a step. There, P must leave a twentieth of the
+/// information that there is if nothing else is unknown but where the cluster is on its link. No
+/// side of a step has fewer than three postures.
 ///
 /// `significance`: gain / 3 over what variance is left, over the quantile of Fisher's F that chance
 /// exceeds with `probability` in any of the steps tried.
