@@ -19,6 +19,7 @@
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/mistakes/trial_offset.hpp"
 #include "elastocal/mistakes/tried_correction.hpp"
 #include "elastocal/mistakes/up_by_loads.hpp"
 
@@ -107,19 +108,28 @@ std::optional<GeneralFault> FindGeneralFault(const Project& project,
                        project.calibration,
                        as_recorded.validation};
   std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, project.calibration);
-  if (!robot.knocks.empty()) {
+  std::optional<RecordingFault> hidden;
+  if (robot.knocks.empty()) {
+    if (faults.empty()) {
+      hidden = FindTrialOffset(result, robot.base, recording, project.calibration);
+    }
+  } else {
     RecordedModel plain = MakeRecordedModel(project, seed, as_recorded, KnockSearch::kNone);
     const CalibrationResult without = Calibrate(plain.model, as_recorded.calibration, plain.base,
                                                 result.kind, project.calibration);
     std::vector<RecordingFault> found =
         FindRecordingFaults(without, as_recorded.calibration, project.calibration);
-    if (!found.empty()) {
+    if (found.empty() && faults.empty()) {
+      hidden = FindTrialOffset(without, plain.base, as_recorded.calibration, project.calibration);
+    }
+    if (!found.empty() || hidden) {
       faults = std::move(found);
       general.model = std::move(plain.model);
       general.base = std::move(plain.base);
       general.recording = std::move(as_recorded.calibration);
     }
   }
+  if (hidden) faults = {*hidden};
   if (faults.empty()) return std::nullopt;
   general.fault = faults.front();
   return general;
