@@ -124,6 +124,19 @@ TEST_F(GeneralFaults, PositionsOfOneJointThatScatterAreNamed) {
   EXPECT_NEAR(found->off, 1.0 * kDegree, 0.5 * kDegree);
 }
 
+// A zero that another trial has elsewhere: what all postures of a trial share is no scatter.
+TEST_F(GeneralFaults, AJointThatIsOffThroughoutATrialDoesNotScatter) {
+  recorded_.trials = {{"first", TrialKind::kCalibration, {project_.chains.front().name}},
+                      {"second", TrialKind::kCalibration, {project_.chains.front().name}}};
+  recorded_.trial.assign(48, 0);
+  std::fill(recorded_.trial.begin() + 24, recorded_.trial.end(), 1);
+  recorded_.q.col(CoordinateOf("elbow_joint")).tail(24).array() += 1.5 * kDegree;
+  const auto found =
+      FindScatteredPositions(Calibrate(model_, recorded_, base_, kKind, project_.calibration),
+                             recorded_, project_.calibration);
+  EXPECT_FALSE(found) << (found ? Describe(*found, project_.tree) : "");
+}
+
 // As a head while a leg is measured. Something pulls at a hand that no camera sees and bends the
 // shoulder by some hundredths of a millimetre; the loads of another attitude of the hand would too.
 TEST_F(GeneralFaults, AJointWhoseMarkersAreOutOfSightDoesNotScatter) {

@@ -79,6 +79,28 @@ double SdOfShown(const Eigen::VectorXd& moved, const Eigen::ArrayXd& shown) {
   return sizes.size() < kFewestShown ? 0.0 : kOfMedian * Median(sizes);
 }
 
+/// Without what a joint is off by throughout a trial (by the median of what is shown there): that
+/// is no scatter.
+Eigen::VectorXd AboutTrials(Eigen::VectorXd moved, const Eigen::ArrayXd& shown,
+                            const Recording& recording) {
+  for (int trial = 0; trial < static_cast<int>(recording.trials.size()); ++trial) {
+    std::vector<double> there;
+    for (Eigen::Index i = 0; i < moved.size(); ++i) {
+      if (recording.trial[static_cast<std::size_t>(i)] == trial && shown[i] > 0.0) {
+        there.push_back(moved[i]);
+      }
+    }
+    if (there.size() < kFewestShown) continue;
+    const double median = Median(there);
+    for (Eigen::Index i = 0; i < moved.size(); ++i) {
+      if (recording.trial[static_cast<std::size_t>(i)] == trial && shown[i] > 0.0) {
+        moved[i] -= median;
+      }
+    }
+  }
+  return moved;
+}
+
 }  // namespace
 
 std::vector<CoarsePositions> FindCoarsePositions(const CalibrationResult& result,
@@ -156,8 +178,13 @@ std::optional<ScatteredPositions> FindScatteredPositions(const CalibrationResult
       if (at.sum() > kLeftWithoutSteps * given.sum()) break;
     }
     if (!(at.sum() < least)) continue;
-    const double off = SdOfShown(q - recording.q.col(joint.coordinate), shown);
+    const Eigen::VectorXd scatter =
+        AboutTrials(q - recording.q.col(joint.coordinate), shown, recording);
+    const double off = SdOfShown(scatter, shown);
     if (off < enough) continue;
+    q = recording.q.col(joint.coordinate) + scatter;
+    at = SquaresOf(result, moved, options);
+    if (!(at.sum() < least)) continue;
     least = at.sum();
     found = {joint.coordinate, off, at.sum() / given.sum()};
   }

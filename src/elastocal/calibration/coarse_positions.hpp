@@ -47,7 +47,8 @@ struct ScatteredPositions {
 /// The joint, of what a fit leaves, that takes most of the squared distances, half and more, when
 /// it is moved in each posture to where it brings the markers nearest: a worn or loose encoder,
 /// whose errors no column, row or trial has in common. Nothing where the usual posture is off by
-/// less than 0.25 degrees or 1 mm, or where so many numbers would take as much of noise.
+/// less than 0.25 degrees or 1 mm, or where so many numbers would take as much of noise. What a
+/// joint is off by throughout a trial, by the median, is no scatter.
 std::optional<ScatteredPositions> FindScatteredPositions(const CalibrationResult& result,
                                                          const Recording& recording,
                                                          const CalibrationOptions& options);

@@ -9,6 +9,7 @@
 #include "elastocal/io/recorded_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/interruption.hpp"
+#include "elastocal/measurement/exchanged_logs.hpp"
 #include "elastocal/measurement/marker_units.hpp"
 #include "elastocal/measurement/merge_trials.hpp"
 #include "elastocal/measurement/session_shapes.hpp"
@@ -197,6 +198,14 @@ RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const
   UpAxis up(experiment);
   std::vector<TrialSamples> sampled = SampleAll(experiment.trials, robot, project, up);
   SampleOddOnesAgain(experiment.trials, robot, project, sampled);
+  RefuseExchangedLogs(
+      [&](std::size_t markers_of, std::size_t log_of) {
+        const TrialFiles& trial = experiment.trials[markers_of];
+        const TrialFiles& other = experiment.trials[log_of];
+        return Sample(trial, robot, project, ReadMarkerFile(trial.markers, trial.reading, project),
+                      ReadJointFile(other.joints, other.reading, project));
+      },
+      sampled);
   for (TrialSamples& samples : sampled) {
     result.trials.push_back(samples.summary);
     for (std::string& finding : Findings(samples.summary)) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <sstream>
 
 #include <fmt/format.h>
 
@@ -15,98 +14,19 @@
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/measurement/thinned_motions.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
+#include "elastocal/mistakes/held_out_contrast.hpp"
+#include "elastocal/mistakes/moved_between.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/validation/held_out.hpp"
 
 namespace elastocal {
 namespace {
 
-constexpr double kSuspicious = 3.0;  // times the error on the trials of the estimate
 constexpr double kContradicted = 10.0;
 constexpr double kLeftByMistake = 0.3;  // of the error on held-out trials
 constexpr int kUpdatesTogether = 15;  // of the noise, of trials that seem to contradict each other
 constexpr int kAtTheSeam = 2;         // postures
 constexpr int kFilterSpreads = 2;     // postures beside exchanged ones, which the filter mixes
-/// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
-/// be as good in motion, which statics does not describe.
-constexpr double kBestExpected = 0.03;
-
-/// A group of chains whose held-out trials the largest model predicts worse than it fits those of
-/// the estimate.
-struct Contrast {
-  std::string group;
-  double fitted = 0.0, uncalibrated = 0.0, held_out = 0.0;  // m
-  double largest_of_clusters = 0.0;                         // of the ratios of all clusters
-  double ratio() const { return held_out / std::max(fitted, kBestExpected * uncalibrated); }
-  bool suspicious() const { return std::max(ratio(), largest_of_clusters) > kSuspicious; }
-};
-
-/// Whether all chains of a group (TrialGroups) are also in another one.
-bool IsWithin(const std::string& group, const std::string& other) {
-  std::istringstream chains(group);
-  for (std::string chain; std::getline(chains, chain, '+');) {
-    if (("+" + other + "+").find("+" + chain + "+") == std::string::npos) return false;
-  }
-  return true;
-}
-
-/// Over all observations of the groups within `group`: limbs that a held-out trial moves together
-/// may have been measured one after the other.
-double RmseWithin(const ErrorTable& table, const std::string& group, ModelKind kind) {
-  double squares = 0.0;
-  double count = 0.0;
-  for (const ErrorTableRow& row : table.groups) {
-    const auto metrics = row.metrics.find(kind);
-    if (metrics == row.metrics.end() || !IsWithin(row.group, group)) continue;
-    squares += metrics->second.observations * std::pow(metrics->second.rmse_3d, 2);
-    count += metrics->second.observations;
-  }
-  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
-}
-
-Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out, ModelKind kind) {
-  Contrast largest{"", 1.0, 0.0, 0.0, 0.0};
-  for (const ErrorTableRow& row : held_out.groups) {
-    const auto metrics = row.metrics.find(kind);
-    const Contrast contrast{row.group, RmseWithin(fitted, row.group, kind),
-                            RmseWithin(fitted, row.group, ModelKind::kUncalibrated),
-                            metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d, 0.0};
-    if (contrast.fitted > 0.0 && contrast.ratio() > largest.ratio()) largest = contrast;
-  }
-  return largest;
-}
-
-/// Root mean square of the markers over the trials that show them; 0 where none does.
-double RmseOfMarkers(const ErrorTable& table, const std::vector<int>& markers, ModelKind kind) {
-  double squares = 0.0;
-  double count = 0.0;
-  for (const TrialErrors& trial : table.trials) {
-    const auto metrics = trial.metrics.find(kind);
-    if (metrics == trial.metrics.end()) continue;
-    for (std::size_t k = 0; k < trial.markers.size(); ++k) {
-      const double rmse = metrics->second.marker_rmse_3d[static_cast<Eigen::Index>(k)];
-      const bool of_these =
-          std::find(markers.begin(), markers.end(), trial.markers[k]) != markers.end();
-      if (!of_these || !std::isfinite(rmse)) continue;
-      squares += rmse * rmse;
-      ++count;
-    }
-  }
-  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
-}
-
-/// The same of the clusters: a neck is a small part of what it moves with.
-double LargestRatioOfClusters(const ErrorTable& fitted, const ErrorTable& held_out,
-                              const std::vector<LabelCluster>& clusters, ModelKind kind) {
-  double largest = 0.0;
-  for (const LabelCluster& cluster : clusters) {
-    const Contrast contrast{"", RmseOfMarkers(fitted, cluster.markers, kind),
-                            RmseOfMarkers(fitted, cluster.markers, ModelKind::kUncalibrated),
-                            RmseOfMarkers(held_out, cluster.markers, kind), 0.0};
-    if (contrast.fitted > 0.0) largest = std::max(largest, contrast.ratio());
-  }
-  return largest;
-}
 
 /// Without the markers that knocks added (SplitMarkers), which the project does not know.
 Recording AsRecorded(const Recording& recording, const std::vector<Knock>& knocks) {
@@ -294,16 +214,18 @@ std::string KnockOfAll(const Project& project, const RecordedModel& robot, const
       DescribePosture(all, knock.last_before));
 }
 
+ErrorTable FittedTable(const Project& project, const Recording& recording,
+                       const ModelComparison& comparison) {
+  return JudgeOnTrials(comparison, AsUsed(recording, comparison.largest()), project.calibration)
+      .table;
+}
+
 /// Whether held-out trials are suspiciously worse than those of the estimate, and by how much.
 Contrast ContrastOf(const Project& project, const Recording& recording,
                     const ModelComparison& comparison, const ErrorTable& held_out_table) {
-  const Recording used = AsUsed(recording, comparison.largest());
-  const ErrorTable fitted = JudgeOnTrials(comparison, used, project.calibration).table;
-  const ModelKind kind = comparison.largest().kind;
-  Contrast contrast = LargestContrast(fitted, held_out_table, kind);
-  contrast.largest_of_clusters =
-      LargestRatioOfClusters(fitted, held_out_table, SeenClusters(project, recording), kind);
-  return contrast;
+  const ErrorTable fitted = FittedTable(project, recording, comparison);
+  return LargestContrast(fitted, held_out_table, SeenClusters(project, recording),
+                         comparison.largest_kind());
 }
 
 }  // namespace
@@ -378,6 +300,14 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   }
   const std::string knock = KnockOfAll(project, robot, all);
   if (!knock.empty()) return {knock};
+  if (!(std::max(contrast.ratio(), contrast.largest_of_clusters) > kContradicted)) return {};
+  const std::string moved = FindMovedBetween(
+      project, together, all, roughly,
+      MovedSuspects(SeenClusters(project, recording), FittedTable(project, recording, comparison),
+                    held_out_table, comparison.largest_kind(), all));
+  if (!moved.empty()) {
+    return {"trials for calibration and for validation contradict each other: " + moved};
+  }
   if (!(contrast.ratio() > kContradicted)) return {};
   char text[200];
   std::snprintf(text, sizeof text,

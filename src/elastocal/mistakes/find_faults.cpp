@@ -19,6 +19,7 @@
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/mistakes/trial_offset.hpp"
 #include "elastocal/mistakes/tried_correction.hpp"
 #include "elastocal/mistakes/up_by_loads.hpp"
 
@@ -92,13 +93,17 @@ std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result)
   return faults;
 }
 
+struct FoundFault : GeneralFault {
+  bool of_one_trial = false;  ///< FindTrialOffset: which trial is wrong, others do not tell
+};
+
 /// What looks like knocks of several clusters may be a fault that moves them all, so it is looked
 /// for without the knocks, too.
-std::optional<GeneralFault> FindGeneralFault(const Project& project,
-                                             std::optional<std::uint64_t> seed,
-                                             Measurements as_recorded, const RecordedModel& robot,
-                                             const Recording& recording,
-                                             const CalibrationResult& result) {
+std::optional<FoundFault> FindGeneralFault(const Project& project,
+                                           std::optional<std::uint64_t> seed,
+                                           Measurements as_recorded, const RecordedModel& robot,
+                                           const Recording& recording,
+                                           const CalibrationResult& result) {
   GeneralFault general{{},
                        robot.model,
                        robot.base,
@@ -107,22 +112,31 @@ std::optional<GeneralFault> FindGeneralFault(const Project& project,
                        project.calibration,
                        as_recorded.validation};
   std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, project.calibration);
-  if (!robot.knocks.empty()) {
+  std::optional<RecordingFault> hidden;
+  if (robot.knocks.empty()) {
+    if (faults.empty()) {
+      hidden = FindTrialOffset(result, robot.base, recording, project.calibration);
+    }
+  } else {
     RecordedModel plain = MakeRecordedModel(project, seed, as_recorded, KnockSearch::kNone);
     const CalibrationResult without = Calibrate(plain.model, as_recorded.calibration, plain.base,
                                                 result.kind, project.calibration);
     std::vector<RecordingFault> found =
         FindRecordingFaults(without, as_recorded.calibration, project.calibration);
-    if (!found.empty()) {
+    if (found.empty() && faults.empty()) {
+      hidden = FindTrialOffset(without, plain.base, as_recorded.calibration, project.calibration);
+    }
+    if (!found.empty() || hidden) {
       faults = std::move(found);
       general.model = std::move(plain.model);
       general.base = std::move(plain.base);
       general.recording = std::move(as_recorded.calibration);
     }
   }
+  if (hidden) faults = {*hidden};
   if (faults.empty()) return std::nullopt;
   general.fault = faults.front();
-  return general;
+  return FoundFault{general, hidden.has_value()};
 }
 
 bool IsFarOff(const std::vector<RecordingFault>& gears) {
@@ -132,8 +146,8 @@ bool IsFarOff(const std::vector<RecordingFault>& gears) {
 }
 
 /// The general fault of a robot without the causes that it seemed to have.
-std::optional<GeneralFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
-                                              const Measurements& as_recorded, ModelKind kind) {
+std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
+                                            const Measurements& as_recorded, ModelKind kind) {
   project.elasticity.extra.clear();
   Measurements plain = as_recorded;
   const RecordedModel robot = MakeRecordedModel(project, seed, plain, KnockSearch::kNone);
@@ -243,7 +257,7 @@ class FaultsInTurn {
  private:
   const CalibrationResult& fit() const { return comparison_.largest(); }
 
-  std::optional<GeneralFault> General() const {
+  std::optional<FoundFault> General() const {
     return FindGeneralFault(project_, seed_, as_recorded_, robot_, recording_, fit());
   }
 
@@ -327,7 +341,10 @@ class FaultsInTurn {
       const auto loose = TooLoose(project_, recording_, fit());
       if (!loose.empty()) return loose;
     }
-    return {few_->text};
+    if (!found_->of_one_trial || !few_->complete) return {few_->text};
+    return {few_->text +
+            "; or by the opposite in the other trials that show it: which of them is wrong, the "
+            "recording may not tell"};
   }
 
   std::vector<std::string> OfFewRowsOrMarkers() const {
@@ -350,7 +367,7 @@ class FaultsInTurn {
   std::string of_slides_;
   bool scale_is_known_;
   double left_ = 0.0;  ///< error of the markers, m
-  std::optional<GeneralFault> found_;
+  std::optional<FoundFault> found_;
   std::optional<FaultsInWords> few_;
 };
 

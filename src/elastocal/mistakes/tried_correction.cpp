@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include "elastocal/calibration/row_shift.hpp"
 #include "elastocal/calibration/table_check.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/mistakes/column_order.hpp"
 #include "elastocal/mistakes/log_alternatives.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 
@@ -66,6 +68,9 @@ std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel
     std::size_t& used = one.kind == LogContradiction::kFrozen ? frozen : others;
     if (used < most) AddUndone(one, project.tree, recording, tried);
     ++used;
+  }
+  for (TriedCorrection& order : FindColumnOrders(nominal, recording)) {
+    tried.push_back(std::move(order));
   }
   if (const std::optional<RowShift> shift = FindRowShift(nominal, recording)) {
     tried.push_back({fmt::format("rows:{:+d}", shift->rows), DescribeShift(*shift, recording),

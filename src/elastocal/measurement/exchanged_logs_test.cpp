@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/measurement/exchanged_logs.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/input_error.hpp"
+
+namespace elastocal {
+namespace {
+
+TrialSamples WithClock(const std::string& name, ClockState state, double peak) {
+  TrialSamples samples;
+  samples.summary.trial.name = name;
+  samples.summary.clock.state = state;
+  samples.summary.clock.peak = peak;
+  if (state != ClockState::kReliable) {
+    samples.summary.refused = "no clock";
+  } else {
+    samples.frames = {8};
+    samples.summary.postures = 1;
+  }
+  return samples;
+}
+
+/// Logs are those of these trials; `peak`: of a trial with its own log.
+SampleWithLog Sampler(const std::vector<std::size_t>& own, double peak) {
+  return [=](std::size_t markers_of, std::size_t log_of) {
+    if (log_of == 3) throw InputError("a log without its joints");
+    const bool fits = own[markers_of] == log_of;
+    return WithClock("", fits ? ClockState::kReliable : ClockState::kWeak, fits ? peak : 0.4);
+  };
+}
+
+// The third trial is not part of it, the last one has a log that no other trial can be read with.
+TEST(ExchangedLogs, TwoTrialsWithEachOthersLogSaySo) {
+  const auto read = [] {
+    return std::vector<TrialSamples>{
+        WithClock("a", ClockState::kWeak, 0.3), WithClock("b", ClockState::kReliable, 0.7),
+        WithClock("c", ClockState::kReliable, 0.999), WithClock("d", ClockState::kWeak, 0.2)};
+  };
+  std::vector<TrialSamples> samples = read();
+  RefuseExchangedLogs(Sampler({1, 0, 2, 3}, 0.99), samples);
+  for (const int k : {0, 1}) {
+    const TrialSamples& one = samples[static_cast<std::size_t>(k)];
+    EXPECT_EQ(one.summary.refused.rfind("the joint logs of trials a and b seem to be exchanged", 0),
+              0u)
+        << one.summary.refused;
+    EXPECT_TRUE(one.frames.empty());
+    EXPECT_EQ(one.summary.postures, 0);
+  }
+  EXPECT_TRUE(samples[2].summary.refused.empty());
+  EXPECT_EQ(samples[3].summary.refused, "no clock");
+
+  // One of the two fits no log better than its own: nothing is exchanged.
+  samples = read();
+  RefuseExchangedLogs(Sampler({1, 1, 2, 3}, 0.99), samples);
+  EXPECT_EQ(samples[0].summary.refused, "no clock");
+  EXPECT_TRUE(samples[1].summary.refused.empty());
+
+  // Hardly better than with its own.
+  samples = read();
+  RefuseExchangedLogs(Sampler({1, 0, 2, 3}, 0.8), samples);
+  EXPECT_EQ(samples[0].summary.refused, "no clock");
+}
+
+}  // namespace
+}  // namespace elastocal

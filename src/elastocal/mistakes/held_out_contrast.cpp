@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/mistakes/held_out_contrast.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "elastocal/math/numbers.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kSuspicious = 3.0;  // times the error on the trials of the estimate
+/// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
+/// be as good in motion, which statics does not describe.
+constexpr double kBestExpected = 0.03;
+
+/// Whether all chains of a group (TrialGroups) are also in another one.
+bool IsWithin(const std::string& group, const std::string& other) {
+  std::istringstream chains(group);
+  for (std::string chain; std::getline(chains, chain, '+');) {
+    if (("+" + other + "+").find("+" + chain + "+") == std::string::npos) return false;
+  }
+  return true;
+}
+
+/// Over all observations of the groups within `group`: limbs that a held-out trial moves together
+/// may have been measured one after the other.
+double RmseWithin(const ErrorTable& table, const std::string& group, ModelKind kind) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const ErrorTableRow& row : table.groups) {
+    const auto metrics = row.metrics.find(kind);
+    if (metrics == row.metrics.end() || !IsWithin(row.group, group)) continue;
+    squares += metrics->second.observations * std::pow(metrics->second.rmse_3d, 2);
+    count += metrics->second.observations;
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+Contrast LargestOfGroups(const ErrorTable& fitted, const ErrorTable& held_out, ModelKind kind) {
+  Contrast largest{"", 1.0, 0.0, 0.0, 0.0};
+  for (const ErrorTableRow& row : held_out.groups) {
+    const auto metrics = row.metrics.find(kind);
+    const Contrast contrast{row.group, RmseWithin(fitted, row.group, kind),
+                            RmseWithin(fitted, row.group, ModelKind::kUncalibrated),
+                            metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d, 0.0};
+    if (contrast.fitted > 0.0 && contrast.ratio() > largest.ratio()) largest = contrast;
+  }
+  return largest;
+}
+
+/// Root mean square of the markers over the trials that show them; 0 where none does.
+double RmseOfMarkers(const ErrorTable& table, const std::vector<int>& markers, ModelKind kind) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const TrialErrors& trial : table.trials) {
+    const auto metrics = trial.metrics.find(kind);
+    if (metrics == trial.metrics.end()) continue;
+    for (std::size_t k = 0; k < trial.markers.size(); ++k) {
+      const double rmse = metrics->second.marker_rmse_3d[static_cast<Eigen::Index>(k)];
+      const bool of_these =
+          std::find(markers.begin(), markers.end(), trial.markers[k]) != markers.end();
+      if (!of_these || !std::isfinite(rmse)) continue;
+      squares += rmse * rmse;
+      ++count;
+    }
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+/// The same of the clusters: a neck is a small part of what it moves with.
+double LargestRatioOfClusters(const ErrorTable& fitted, const ErrorTable& held_out,
+                              const std::vector<LabelCluster>& clusters, ModelKind kind) {
+  double largest = 0.0;
+  for (const LabelCluster& cluster : clusters) {
+    const Contrast contrast{"", RmseOfMarkers(fitted, cluster.markers, kind),
+                            RmseOfMarkers(fitted, cluster.markers, ModelKind::kUncalibrated),
+                            RmseOfMarkers(held_out, cluster.markers, kind), 0.0};
+    if (contrast.fitted > 0.0) largest = std::max(largest, contrast.ratio());
+  }
+  return largest;
+}
+
+}  // namespace
+
+double Contrast::ratio() const { return held_out / std::max(fitted, kBestExpected * uncalibrated); }
+
+bool Contrast::suspicious() const { return std::max(ratio(), largest_of_clusters) > kSuspicious; }
+
+Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out,
+                         const std::vector<LabelCluster>& clusters, ModelKind kind) {
+  Contrast contrast = LargestOfGroups(fitted, held_out, kind);
+  contrast.largest_of_clusters = LargestRatioOfClusters(fitted, held_out, clusters, kind);
+  return contrast;
+}
+
+std::vector<MovedSuspect> MovedSuspects(const std::vector<LabelCluster>& clusters,
+                                        const ErrorTable& fitted, const ErrorTable& held_out,
+                                        ModelKind kind, const Recording& all) {
+  std::vector<std::pair<double, MovedSuspect>> suspects;
+  for (const LabelCluster& cluster : clusters) {
+    const double known =
+        std::max(RmseOfMarkers(fitted, cluster.markers, kind),
+                 kBestExpected * RmseOfMarkers(fitted, cluster.markers, ModelKind::kUncalibrated));
+    if (!(known > 0.0)) continue;
+    double worst = 0.0;
+    MovedSuspect suspect{cluster, all.posture_count(), 0};
+    for (const TrialErrors& trial : held_out.trials) {
+      ErrorTable alone;
+      alone.trials = {trial};
+      const double ratio = RmseOfMarkers(alone, cluster.markers, kind) / known;
+      if (!(ratio > kSuspicious)) continue;
+      worst = std::max(worst, ratio);
+      for (int i = 0; i < all.posture_count(); ++i) {
+        if (all.trials[Size(all.trial[Size(i)])].name != trial.trial) continue;
+        suspect.begin = std::min(suspect.begin, i);
+        suspect.end = std::max(suspect.end, i + 1);
+      }
+    }
+    if (suspect.begin < suspect.end) suspects.emplace_back(worst, suspect);
+  }
+  std::stable_sort(suspects.begin(), suspects.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<MovedSuspect> sorted;
+  for (const auto& [ratio, suspect] : suspects) sorted.push_back(suspect);
+  return sorted;
+}
+
+}  // namespace elastocal

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/mistakes/trial_offset.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "elastocal/calibration/prediction.hpp"
+#include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/robot/linkage.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kLeastTrialOffset = 0.25 * M_PI / 180.0, kLeastTrialShift = 1e-3;
+constexpr double kLeftByOffset = 0.5;    // of the squared distances
+constexpr double kLeftOfFit = 0.5;       // of the error of the fit
+constexpr std::size_t kMostOffsets = 4;  // that are undone and fitted
+constexpr int kNewtonSteps = 2;
+constexpr int kFewestOfTrial = 3;  // postures
+constexpr std::size_t kFewestTrials = 2;
+
+/// By trial, m^2.
+Eigen::VectorXd SquaresByTrial(const CalibrationResult& result, const Recording& recording,
+                               const CalibrationOptions& options) {
+  const Eigen::MatrixXd distances =
+      Predict(result.model, result.delta, recording, options, &result.placement).distances;
+  Eigen::VectorXd squares =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(recording.trials.size()));
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    for (const double d : distances.row(i)) {
+      if (std::isfinite(d)) squares[recording.trial[Size(i)]] += d * d;
+    }
+  }
+  return squares;
+}
+
+void Move(const Eigen::VectorXd& by_trial, int coordinate, Recording& recording) {
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    recording.q(i, coordinate) += by_trial[recording.trial[Size(i)]];
+  }
+}
+
+struct TrialOffset {
+  RecordingFault fault;
+  double left = 0.0;  ///< sum of all squared distances, m^2
+};
+
+/// Of one joint, in each trial by itself.
+void AddOffsets(const CalibrationResult& result, const Recording& recording,
+                const CalibrationOptions& options, const Eigen::VectorXd& given, const Joint& joint,
+                std::vector<TrialOffset>& found) {
+  const double enough = joint.type == JointType::kPrismatic ? kLeastTrialShift : kLeastTrialOffset;
+  Recording moved = recording;
+  Eigen::VectorXd by = Eigen::VectorXd::Zero(given.size()), at = given;
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    const auto beside = [&](double sign) {
+      Recording other = moved;
+      other.q.col(joint.coordinate).array() += sign * enough;
+      return SquaresByTrial(result, other, options);
+    };
+    const Eigen::ArrayXd before = beside(-1.0).array(), after = beside(1.0).array();
+    const Eigen::ArrayXd curvature = before + after - 2.0 * at.array();
+    const Eigen::VectorXd change =
+        (curvature > 1e-12 * given.sum())
+            .select(enough * 0.5 * (before - after) / curvature.max(1e-300), 0.0);
+    by += change;
+    Move(change, joint.coordinate, moved);
+    at = SquaresByTrial(result, moved, options);
+  }
+  for (Eigen::Index trial = 0; trial < given.size(); ++trial) {
+    const double left = given.sum() - given[trial] + at[trial];
+    const auto postures =
+        std::count(recording.trial.begin(), recording.trial.end(), static_cast<int>(trial));
+    if (!(std::abs(by[trial]) > enough) || !(left < kLeftByOffset * given.sum()) ||
+        postures < kFewestOfTrial) {
+      continue;
+    }
+    const auto first =
+        std::find(recording.trial.begin(), recording.trial.end(), static_cast<int>(trial));
+    found.push_back({{.kind = FaultKind::kJointOffset,
+                      .coordinate = joint.coordinate,
+                      .trial = static_cast<int>(trial),
+                      .posture = static_cast<int>(first - recording.trial.begin()),
+                      .size = -by[trial]},
+                     left});
+  }
+}
+
+/// Of all joints in the trials of these, beside the errors of the robot, which take a part of each:
+/// the one that explains most first.
+std::vector<RecordingFault> OffsetsBesideErrors(const CalibrationResult& result,
+                                                const Recording& recording,
+                                                const CalibrationOptions& options,
+                                                const std::vector<TrialOffset>& offsets) {
+  std::vector<RecordingFault> measured;
+  for (std::size_t k = 0; k < offsets.size(); ++k) {
+    RecordingFault fault = offsets[k].fault;
+    const bool known =
+        std::any_of(offsets.begin(), offsets.begin() + static_cast<std::ptrdiff_t>(k),
+                    [&](const TrialOffset& one) { return one.fault.trial == fault.trial; });
+    if (known) continue;
+    for (const int joint : result.model.active_joints) {
+      const Joint& of = result.model.tree.joints[Size(joint)];
+      if (of.mimic || IsMovedByRods(result.model.tree, joint)) continue;
+      fault.coordinate = of.coordinate;
+      const RecordingFault one = MeasureFault(fault, result, recording, options);
+      const bool slides = of.type == JointType::kPrismatic;
+      const bool matters = std::abs(one.size) > LeastSize(one.kind, slides) &&
+                           std::abs(one.size) < LargestSize(one.kind, slides);
+      if (matters && IsCertain(one)) measured.push_back(one);
+    }
+  }
+  std::stable_sort(
+      measured.begin(), measured.end(),
+      [](const RecordingFault& a, const RecordingFault& b) { return a.share > b.share; });
+  return measured;
+}
+
+}  // namespace
+
+std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
+                                              const BaseParameters& base,
+                                              const Recording& recording,
+                                              const CalibrationOptions& options) {
+  if (recording.trials.size() < kFewestTrials) return std::nullopt;
+  const RobotTree& tree = result.model.tree;
+  const Eigen::VectorXd given = SquaresByTrial(result, recording, options);
+  std::vector<TrialOffset> offsets;
+  for (const int k : result.model.active_joints) {
+    const Joint& joint = tree.joints[Size(k)];
+    if (joint.mimic || IsMovedByRods(tree, k)) continue;
+    AddOffsets(result, recording, options, given, joint, offsets);
+  }
+  std::stable_sort(offsets.begin(), offsets.end(),
+                   [](const TrialOffset& a, const TrialOffset& b) { return a.left < b.left; });
+  double least = kLeftOfFit * MarkerError(result, recording, options);
+  std::optional<RecordingFault> found;
+  const std::vector<RecordingFault> candidates =
+      OffsetsBesideErrors(result, recording, options, offsets);
+  for (std::size_t k = 0; k < std::min(kMostOffsets, candidates.size()); ++k) {
+    const Recording without = WithoutFault(recording, candidates[k]);
+    try {
+      const double left = MarkerError(Calibrate(result.model, without, base, result.kind, options),
+                                      without, options);
+      if (!(left < least)) continue;
+      least = left;
+      found = candidates[k];
+    } catch (const InputError&) {
+      continue;
+    }
+  }
+  return found;
+}
+
+}  // namespace elastocal

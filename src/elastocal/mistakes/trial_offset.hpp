@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/recording_fault.hpp"
+
+namespace elastocal {
+
+/// A joint that is off by a constant in one trial, where noise hides it from FindRecordingFaults: a
+/// leg that stands there is off by more than it gives way, and what ties the waist to its foot
+/// counts the less. Each joint is moved in each trial, by what brings the markers nearest to where
+/// the robot of `result` puts them. Where that is 0.25 degrees or 1 mm and more, and takes half of
+/// all squared distances, the offsets of all joints in that trial are estimated beside the errors
+/// of the robot, and the four that explain most are undone, one by one, and the robot fitted again.
+/// Nothing unless one leaves half of the error.
+std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
+                                              const BaseParameters& base,
+                                              const Recording& recording,
+                                              const CalibrationOptions& options);
+
+}  // namespace elastocal
