@@ -93,6 +93,17 @@ TEST_F(Program, PlanRefusesTheApproachOfTouchesWhereThereAreNone) {
   EXPECT_NE(result.err.find("--approach-mm"), std::string::npos) << result.err;
 }
 
+TEST_F(Program, DesignRefusesWhatItsKindOfSearchDoesNotKnow) {
+  EXPECT_EQ(RunProgram("design p.yaml -o q.yaml --after out --plateau 0.01").exit_code, 2);
+  const std::string touches = SourceFile("examples/talos_touch/project.yaml").string();
+  for (const std::string idle : {"--chains arm_left", "--elastic", "--block 2"}) {
+    const ProgramResult result = RunProgram("design " + touches + " -o " + out_ + " " + idle);
+    EXPECT_EQ(result.exit_code, 3) << idle;
+    EXPECT_NE(result.err.find("error: " + idle.substr(0, idle.find(' '))), std::string::npos)
+        << result.err;
+  }
+}
+
 TEST_F(Program, WrongUsageEndsWithTwo) {
   EXPECT_EQ(RunProgram("").exit_code, 2);
   EXPECT_EQ(RunProgram("calibrat").exit_code, 2);

@@ -17,6 +17,7 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/files/output_set.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/design_follow_up.hpp"
@@ -37,7 +38,14 @@ struct DesignCommand {
   bool check = false;
   std::vector<std::string> joints;
   double days = 1.0, marker_noise_mm = 0.3, limit_margin_deg = 0.0;
+  /// Those given of the options that design by observations (contact, instruments) does not know.
+  std::vector<std::string> of_chains;
 };
+
+/// How postures are searched for chain by chain, but after a calibration.
+constexpr std::array kSearchOptions = {"--algorithm", "--criterion",     "--curves",
+                                       "--elastic",   "--max-count",     "--plateau",
+                                       "--block",     "--no-certificate"};
 
 constexpr std::array kAlgorithms = {DesignAlgorithm::kNocp, DesignAlgorithm::kCocp,
                                     DesignAlgorithm::kIoops, DesignAlgorithm::kExchange,
@@ -110,6 +118,11 @@ int Design(const DesignCommand& command) {
   const Project project =
       LeaveRoom(ReadProject(command.project), command.limit_margin_deg * M_PI / 180.0);
   if (project.contact) {
+    if (!command.of_chains.empty()) {
+      throw InputError(command.of_chains.front() + ": it is for chains whose markers are seen; " +
+                       project.file.string() +
+                       " has contact or instruments, whose postures are designed all together");
+    }
     return RunObservationDesign({command.common, command.output, command.count, command.after,
                                  command.days, command.check, command.joints},
                                 project);
@@ -157,11 +170,8 @@ void AddFollowUpOptions(CLI::App& command, DesignCommand& options) {
                                        "An earlier calibration of the robot (output folder of "
                                        "calibrate): design the --count "
                                        "postures (8) that add most to it")
-                           ->excludes("--algorithm")
-                           ->excludes("--criterion")
-                           ->excludes("--curves")
-                           ->excludes("--elastic")
                            ->type_name("DIR");
+  for (const char* option : kSearchOptions) after->excludes(option);
   CLI::Option* check =
       command
           .add_flag("--check", options.check,
@@ -245,7 +255,15 @@ void AddDesign(CLI::App& app, Action& action) {
   command->footer(
       "Example: elastocal design models/talos/project.yaml -o postures.yaml\n"
       "Example: elastocal design project.yaml --after out --check -o check.yaml");
-  command->callback([&action, options] { action = [options] { return Design(*options); }; });
+  command->callback([&action, options, command] {
+    for (const char* option : kSearchOptions) {
+      if (command->count(option) > 0) options->of_chains.emplace_back(option);
+    }
+    for (const char* option : {"--chains", "--marker-noise-mm"}) {
+      if (command->count(option) > 0) options->of_chains.emplace_back(option);
+    }
+    action = [options] { return Design(*options); };
+  });
 }
 
 }  // namespace elastocal::cli
