@@ -107,7 +107,7 @@ TEST_F(Program, JsonCanGoToStandardOutput) {
   const ProgramResult result = Calibrate(project_, recording_, "--kfold 3 --json -");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(nlohmann::json::parse(result.out)["status"], "converged");
-  const ProgramResult demo = RunProgram("demo --quick --count 8 --json - -o " + out_);
+  const ProgramResult demo = RunProgram("demo --quick --count 5 --json - -o " + out_);
   EXPECT_EQ(nlohmann::json::parse(demo.out)["status"], "converged") << demo.err;
 }
 

@@ -81,6 +81,11 @@ TEST(WarningGroups, TheNameOfAFileMayHaveBlanks) {
                            "day 2/arm A-C.csv:7: the row comes twice"}),
             std::vector<std::string>{
                 "day 2/arm A-B.csv:45: the row comes twice (likewise day 2/arm A-C.csv:7)"});
+  // In mid-sentence as well.
+  EXPECT_EQ(GroupWarnings({"left out: hand_x in day 2/arm A-B.csv:45 (9 mm)",
+                           "left out: hand_x in day 3/arm A-C.csv:7 (8 mm)"}),
+            std::vector<std::string>{"left out: hand_x in day 2/arm A-B.csv:45 (9 mm) (likewise "
+                                     "day 3/arm A-C.csv:7)"});
   // What is no file is read word by word.
   EXPECT_EQ(GroupWarnings({"joint arm.left: it is late", "joint arm.right: it is late"}),
             std::vector<std::string>{"joint arm.left: it is late (likewise arm.right)"});

@@ -59,6 +59,51 @@ TEST_F(Program, NumbersHaveTheirRangesAndListsTheirWordsInAnyCase) {
   EXPECT_EQ(RunProgram("plan no.yaml -o m.csv --kind sine --postures p.yaml").exit_code, 2);
 }
 
+// The option, what was found, what was expected.
+TEST_F(Program, WrongUsageIsSaidInTheProgramsOwnWords) {
+  const std::string plan = "plan no.yaml --kind sine -o m.csv ";
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {plan + "--seed abc", "--seed: found 'abc'; expected a whole number from 0 on"},
+      {plan + "--seed 1e30", "--seed: found '1e30'; expected a whole number"},
+      {plan + "--robots 1.5", "--robots: found '1.5'; expected a whole number from 0 to 1000"},
+      {plan + "--robots", "--robots: found nothing; expected a value"},
+      {plan + "-o n.csv", "--output: found several values; expected one"},
+      {plan + "--lift 3", "not expected: '--lift', '3'; did you mean '--lift-mm'?"},
+      {plan + "--postures p.yaml", "--postures and --kind cannot be given together"},
+      {plan + "--floor-friction 0.5", "--floor-friction requires --robots"},
+      {plan + "--no-stabiliser", "--no-stabiliser requires --robots"},
+      {"plan no.yaml -o m.csv --kind sin",
+       "--kind: found 'sin'; expected sine, random or repeatability; did you mean 'sine'?"},
+      {"export out --format urdf -o f --min-gain -5",
+       "--min-gain: found '-5'; expected a number from 0 to 100"},
+      {"", "A command is required\nelastocal --help explains what there is."},
+      {"calibrate", "elastocal calibrate --help explains the options."}};
+  for (const auto& [words, message] : wrong) {
+    const ProgramResult result = RunProgram(words);
+    EXPECT_EQ(result.exit_code, 2) << words;
+    EXPECT_NE(result.err.find(message), std::string::npos) << words << ": " << result.err;
+  }
+}
+
+TEST_F(Program, PlanRefusesTheApproachOfTouchesWhereThereAreNone) {
+  const ProgramResult result =
+      RunProgram("plan " + SourceFile("models/talos/project.yaml").string() +
+                 " --postures p.yaml --approach-mm 40 -o " + out_ + "/m.csv");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find("--approach-mm"), std::string::npos) << result.err;
+}
+
+TEST_F(Program, DesignRefusesWhatItsKindOfSearchDoesNotKnow) {
+  EXPECT_EQ(RunProgram("design p.yaml -o q.yaml --after out --plateau 0.01").exit_code, 2);
+  const std::string touches = SourceFile("examples/talos_touch/project.yaml").string();
+  for (const std::string idle : {"--chains arm_left", "--elastic", "--block 2"}) {
+    const ProgramResult result = RunProgram("design " + touches + " -o " + out_ + " " + idle);
+    EXPECT_EQ(result.exit_code, 3) << idle;
+    EXPECT_NE(result.err.find("error: " + idle.substr(0, idle.find(' '))), std::string::npos)
+        << result.err;
+  }
+}
+
 TEST_F(Program, WrongUsageEndsWithTwo) {
   EXPECT_EQ(RunProgram("").exit_code, 2);
   EXPECT_EQ(RunProgram("calibrat").exit_code, 2);

@@ -45,7 +45,7 @@ TEST(InitProgram, WritesAProjectThatInspectAndDesignTakeAsItIs) {
   EXPECT_EQ(inspected.exit_code, 0) << inspected.err;
   const std::string postures = out + "/postures.yaml", motion = out + "/motion.csv";
   const ProgramResult designed =
-      RunProgram("design " + out + "/project.yaml --count 4 -o " + postures);
+      RunProgram("design " + out + "/project.yaml --count 4 --no-certificate -o " + postures);
   EXPECT_EQ(designed.exit_code, 0) << designed.err;
   const ProgramResult planned =
       RunProgram("plan " + out + "/project.yaml --postures " + postures + " -o " + motion);

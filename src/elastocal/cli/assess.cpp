@@ -140,12 +140,12 @@ void AddAssess(CLI::App& app, Action& action) {
       ->check(InBounds("assess --marker-noise-mm"))
       ->capture_default_str();
   command->add_option("--weakest", options->weakest, "How many of the weakest parameters to show")
-      ->check(CLI::Range(0, 1000))
+      ->check(FromTo(0, 1000))
       ->capture_default_str();
   command->add_flag(
       "--elastic", options->elastic,
-      "The compliances of the joints (eq. 5), and of the one leg that stands (eq. 6), shall be "
-      "determined too");
+      "Also judge by the compliances of the joints (eq. 5), and of the one leg that stands "
+      "(eq. 6)");
   AddCommonOptions(*command, options->common);
   command->footer("Example: elastocal assess models/talos/project.yaml --postures postures.yaml");
   command->callback([&action, options] {

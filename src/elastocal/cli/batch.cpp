@@ -319,7 +319,7 @@ void AddBatch(CLI::App& app, Action& action) {
   command
       ->add_option("--workers", options->workers,
                    "Tasks at a time on this machine; 0: one a core (under mpirun: one a rank)")
-      ->check(CLI::Range(0, 1024))
+      ->check(FromTo(0, 1024))
       ->capture_default_str();
   command
       ->add_option("--level", options->level,

@@ -100,62 +100,79 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   return result.exit_code();
 }
 
-void AddCalibrate(CLI::App& app, Action& action) {
-  auto options = std::make_shared<CalibrateOptions>();
-  CLI::App* command = app.add_subcommand(
-      "calibrate", "Estimate the robot's errors from a recording; write the calibrated URDF");
-  command->add_option("project", options->project, "Project file (YAML)")->required();
+namespace {
+
+/// What is calibrated from what, and where to.
+void AddInputs(CLI::App& command, CalibrateOptions& options) {
+  command.add_option("project", options.project, "Project file (YAML)")->required();
   command
-      ->add_option(
-          "--recording", options->recordings,
+      .add_option(
+          "--recording", options.recordings,
           "Table of static postures (CSV), folders with experiment.yaml, or tables of touches")
       ->required()
       ->type_name("FILE");
-  command->add_option("-o,--output", options->output, "Folder for the results")
+  command.add_option("-o,--output", options.output, "Folder for the results")
       ->required()
       ->check(IsNamed)
       ->type_name("DIR");
+}
+
+void AddFolds(CLI::App& command, CalibrateOptions& options) {
   command
-      ->add_option(
-          "--kfold", options->folds,
+      .add_option(
+          "--kfold", options.folds,
           "Cross-validate with this many folds; 0: not (default: 10 for a table of postures, one "
           "each for fewer, 0 for trials)")
-      ->check(CLI::Range(0, 100000));
+      ->check(FromTo(0, 100000));
   command
-      ->add_option(
-          "--fold-by", options->fold_by,
-          "What a fold leaves out: postures (nearly equal ones together), whole trials, or "
-          "sessions, which are all trials of a recording folder")
-      ->transform(CLI::IsMember({"posture", "trial", "session"}, CLI::ignore_case))
+      .add_option("--fold-by", options.fold_by,
+                  "What a fold leaves out: postures (nearly equal ones together), whole trials, or "
+                  "sessions, which are all trials of a recording folder")
+      ->transform(OneOf({"posture", "trial", "session"}))
       ->capture_default_str();
-  command->add_option("--threads", options->threads, "Folds estimated at a time")
-      ->check(CLI::Range(1, 64))
+  command.add_option("--threads", options.threads, "Folds estimated at a time")
+      ->check(FromTo(1, 64))
       ->capture_default_str();
-  command
-      ->add_option("--zero-offsets", options->zero_offsets,
-                   "Where the joints' zero offsets go: into the URDF's joint origins (origin) or "
-                   "apart, to be added to the encoders (encoder)")
-      ->transform(CLI::IsMember({"origin", "encoder"}, CLI::ignore_case))
-      ->capture_default_str();
+}
+
+/// What is known beside the recording: an earlier calibration, places of markers, mistakes.
+void AddKnowledge(CLI::App& command, CalibrateOptions& options) {
   CLI::Option* prior =
       command
-          ->add_option("--prior", options->prior,
-                       "An earlier calibration of the robot (output folder of calibrate): a few "
-                       "postures update it")
+          .add_option("--prior", options.prior,
+                      "An earlier calibration of the robot (output folder of calibrate): a few "
+                      "postures update it")
           ->type_name("DIR");
   command
-      ->add_option("--days", options->days,
-                   "Days since that calibration: zeros may have drifted for as many of them as "
-                   "the recording asks for")
+      .add_option("--days", options.days,
+                  "Days since that calibration: zeros may have drifted for as many of them as "
+                  "the recording asks for")
       ->needs(prior)
       ->check(InBounds("calibrate --days"))
       ->capture_default_str();
   command
-      ->add_option("--marker-places", options->marker_places,
-                   "Table (CSV) of markers whose places on their links were measured, with "
-                   "standard deviations: tells where frames of hands and soles of feet are")
+      .add_option("--marker-places", options.marker_places,
+                  "Table (CSV) of markers whose places on their links were measured, with "
+                  "standard deviations: tells where frames of hands and soles of feet are")
       ->type_name("FILE");
-  AddAcceptOption(*command, options->accept);
+  AddAcceptOption(command, options.accept);
+}
+
+}  // namespace
+
+void AddCalibrate(CLI::App& app, Action& action) {
+  auto options = std::make_shared<CalibrateOptions>();
+  CLI::App* command = app.add_subcommand(
+      "calibrate", "Estimate the robot's errors from a recording; write the calibrated URDF");
+  AddInputs(*command, *options);
+  AddFolds(*command, *options);
+  command
+      ->add_option("--zero-offsets", options->zero_offsets,
+                   "Where the joints' zero offsets go: into the URDF's joint origins (origin) or "
+                   "apart, to be added to the encoders (encoder)")
+      ->transform(OneOf({"origin", "encoder"}))
+      ->capture_default_str();
+  AddKnowledge(*command, *options);
   AddCommonOptions(*command, options->common);
   command->footer(
       "Writes ROBOT_calibrated.urdf, calibration.yaml, offsets.xacro and covariance.csv, and, "

@@ -37,9 +37,6 @@ struct CommonOptions {
 void AddCommonOptions(CLI::App& command, CommonOptions& options);
 void AddOutputOptions(CLI::App& command, CommonOptions& options);
 
-/// A check of CLI11: what is wrong with the text of a seed, or nothing.
-std::string IsSeed(const std::string& text);
-
 /// The calibration that a command puts to use, and the project it belongs to.
 void AddCalibratedRobot(CLI::App& command, std::string& calibration, std::string& project);
 

@@ -137,13 +137,13 @@ void AddCompensate(CLI::App& app, Action& action) {
       ->add_option("--as", options->as,
                    "What the correction knows: compensated (geometry and elasticity) or urdf "
                    "(geometry alone, as the calibrated URDF)")
-      ->transform(CLI::IsMember({"compensated", "urdf"}, CLI::ignore_case))
+      ->transform(OneOf({"compensated", "urdf"}))
       ->capture_default_str();
   command
       ->add_option("--loads", options->loads,
                    "What deflects the robot: statics (the weight in each posture) or planned "
                    "(torques of the motion, for fast ones)")
-      ->transform(CLI::IsMember({"statics", "planned"}, CLI::ignore_case))
+      ->transform(OneOf({"statics", "planned"}))
       ->capture_default_str();
   command
       ->add_option("--most-left-mm", options->most_left_mm,

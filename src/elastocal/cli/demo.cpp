@@ -183,7 +183,7 @@ void AddDemo(CLI::App& app, Action& action) {
           "calibration at work for two minutes, with a stabiliser only; default: as many as "
           "it takes, and 20 "
           "(--quick: 60 in all)")
-      ->check(CLI::Range(4, 10000));
+      ->check(FromTo(4, 10000));
   command->add_flag("--quick", options->quick,
                     "Only estimate, from a generated table of random postures of the upper body, "
                     "and show truth against estimate");

@@ -17,6 +17,7 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/files/output_set.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/design_follow_up.hpp"
@@ -37,7 +38,14 @@ struct DesignCommand {
   bool check = false;
   std::vector<std::string> joints;
   double days = 1.0, marker_noise_mm = 0.3, limit_margin_deg = 0.0;
+  /// Those given of the options that design by observations (contact, instruments) does not know.
+  std::vector<std::string> of_chains;
 };
+
+/// How postures are searched for chain by chain, but after a calibration.
+constexpr std::array kSearchOptions = {"--algorithm", "--criterion",     "--curves",
+                                       "--elastic",   "--max-count",     "--plateau",
+                                       "--block",     "--no-certificate"};
 
 constexpr std::array kAlgorithms = {DesignAlgorithm::kNocp, DesignAlgorithm::kCocp,
                                     DesignAlgorithm::kIoops, DesignAlgorithm::kExchange,
@@ -110,6 +118,11 @@ int Design(const DesignCommand& command) {
   const Project project =
       LeaveRoom(ReadProject(command.project), command.limit_margin_deg * M_PI / 180.0);
   if (project.contact) {
+    if (!command.of_chains.empty()) {
+      throw InputError(command.of_chains.front() + ": it is for chains whose markers are seen; " +
+                       project.file.string() +
+                       " has contact or instruments, whose postures are designed all together");
+    }
     return RunObservationDesign({command.common, command.output, command.count, command.after,
                                  command.days, command.check, command.joints},
                                 project);
@@ -152,22 +165,21 @@ int Design(const DesignCommand& command) {
 }
 
 void AddFollowUpOptions(CLI::App& command, DesignCommand& options) {
-  CLI::Option* after =
-      command
-          .add_option("--after", options.after,
-                      "A calibration of the robot (output folder of calibrate): --count postures "
-                      "(8) that add most to what it tells")
-          ->excludes("--algorithm")
-          ->excludes("--criterion")
-          ->excludes("--curves")
-          ->excludes("--elastic")
-          ->type_name("DIR");
+  CLI::Option* after = command
+                           .add_option("--after", options.after,
+                                       "An earlier calibration of the robot (output folder of "
+                                       "calibrate): design the --count "
+                                       "postures (8) that add most to it")
+                           ->type_name("DIR");
+  for (const char* option : kSearchOptions) after->excludes(option);
   CLI::Option* check =
       command
           .add_flag("--check", options.check,
-                    "Instead those that tell best whether a joint has moved since, see check")
+                    "Design the postures that tell best whether a joint has moved since, for check")
           ->needs(after);
-  command.add_option("--joints", options.joints, "Of which joints; default: all")
+  command
+      .add_option("--joints", options.joints,
+                  "Joints whose movement --check shall tell; default: all")
       ->needs(check)
       ->expected(-1)
       ->type_name("NAME");
@@ -177,7 +189,7 @@ void AddFollowUpOptions(CLI::App& command, DesignCommand& options) {
       ->capture_default_str();
   command
       .add_option("--marker-noise-mm", options.marker_noise_mm,
-                  "Of a coordinate, errors of the model included")
+                  "Noise of a marker's coordinate, errors of the model included, mm")
       ->needs(after)
       ->check(InBounds("assess --marker-noise-mm"))
       ->capture_default_str();
@@ -206,42 +218,52 @@ void AddDesign(CLI::App& app, Action& action) {
       ->capture_default_str();
   command
       ->add_option("--count", options->count,
-                   "Exactly so many postures for each chain instead of as many as it takes; with "
-                   "contact or instruments in the project, so many in all (30)")
-      ->check(CLI::Range(1, 1000));
-  command->add_option("--max-count", options->max_count, "At most so many postures for each chain")
-      ->check(CLI::Range(1, 1000))
+                   "Number of postures for each chain; default: as many as it takes. With "
+                   "contact or instruments in the project, number in all (30)")
+      ->check(FromTo(1, 1000));
+  command
+      ->add_option("--max-count", options->max_count, "Largest number of postures for each chain")
+      ->check(FromTo(1, 1000))
       ->capture_default_str();
   command
-      ->add_option("--plateau", options->plateau,
-                   "Ends when two additions in turn change the index by less than this, relatively")
+      ->add_option(
+          "--plateau", options->plateau,
+          "The search ends when two additions in turn raise the index by less than this share")
       ->check(InBounds("design --plateau"))
       ->capture_default_str();
   command->add_option("--block", options->block, "Postures added at a time (N_p)")
-      ->check(CLI::Range(1, 100))
+      ->check(FromTo(1, 100))
       ->capture_default_str();
   command
       ->add_option("--algorithm", options->algorithm,
                    "nocp finds out how many postures it takes; the others take --count (24)")
-      ->transform(CLI::IsMember({"nocp", "cocp", "ioops", "exchange", "random"}, CLI::ignore_case))
+      ->transform(OneOf({"nocp", "cocp", "ioops", "exchange", "random"}))
       ->capture_default_str();
   command->add_option("--criterion", options->criterion, "Observability index")
-      ->transform(CLI::IsMember({"O1", "O2", "O3", "O4", "O5"}, CLI::ignore_case))
+      ->transform(OneOf({"O1", "O2", "O3", "O4", "O5"}))
       ->capture_default_str();
   command->add_flag(
       "--elastic", options->elastic,
-      "The compliances of the joints (eq. 5), and of the one leg that stands (eq. 6), shall be "
-      "determined too");
+      "Also determine the compliances of the joints (eq. 5), and of the one leg that stands "
+      "(eq. 6)");
   command->add_flag("--curves", options->curves,
                     "Also show what the other algorithms reach (takes several times as long)");
   command->add_flag("--no-certificate", options->no_certificate,
-                    "Without the upper bound and the efficiency");
+                    "Do not compute the upper bound and the efficiency, which takes long");
   AddFollowUpOptions(*command, *options);
   AddCommonOptions(*command, options->common);
   command->footer(
       "Example: elastocal design models/talos/project.yaml -o postures.yaml\n"
       "Example: elastocal design project.yaml --after out --check -o check.yaml");
-  command->callback([&action, options] { action = [options] { return Design(*options); }; });
+  command->callback([&action, options, command] {
+    for (const char* option : kSearchOptions) {
+      if (command->count(option) > 0) options->of_chains.emplace_back(option);
+    }
+    for (const char* option : {"--chains", "--marker-noise-mm"}) {
+      if (command->count(option) > 0) options->of_chains.emplace_back(option);
+    }
+    action = [options] { return Design(*options); };
+  });
 }
 
 }  // namespace elastocal::cli

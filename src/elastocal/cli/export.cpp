@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -22,6 +25,12 @@ struct ExportCommand {
   ExportOptions options;
 };
 
+/// A format in a few words.
+std::string WhatIs(const std::string& name) {
+  const std::vector<ExportFormat> formats = ExportFormats();
+  return std::ranges::find(formats, name, &ExportFormat::name)->what;
+}
+
 int Export(const ExportCommand& command) {
   const CalibratedRobot robot = OpenCalibratedRobot(command.calibration, command.project);
   OutputSet outputs;
@@ -39,8 +48,73 @@ int Export(const ExportCommand& command) {
   outputs.Publish();
   WarnOfExtra(robot, options.format == "c99" || options.format == "runtime");
   for (const std::string& note : exported.notes) Print(command.quiet, note + "\n");
-  Print(command.quiet, fmt::format("Written: {}\n", command.output));
+  Print(command.quiet, fmt::format("Written: {}, {}\n", command.output, WhatIs(options.format)));
   return kFine;
+}
+
+/// Which calibration, in which form, to which file.
+void AddWhatAndWhere(CLI::App& command, ExportCommand& options) {
+  AddCalibratedRobot(command, options.calibration, options.project);
+  std::string help = "One of";
+  std::vector<std::string> names;
+  for (const ExportFormat& format : ExportFormats()) {
+    help += fmt::format("{} {}: {}", names.empty() ? "" : ";", format.name, format.what);
+    names.push_back(format.name);
+  }
+  command.add_option("--format", options.options.format, help)
+      ->required()
+      ->transform(OneOf(names))
+      ->type_name("NAME");
+  command.add_option("-o,--output", options.output, "The file to write")
+      ->required()
+      ->check(IsNamed)
+      ->type_name("FILE");
+}
+
+/// Which joints stay nominal, in any format.
+void AddChoiceOfJoints(CLI::App& command, ExportCommand& options) {
+  command
+      .add_option("--min-significance", options.options.least_significance,
+                  "Joints whose errors are all below so many standard deviations stay nominal")
+      ->check(FromTo(0.0, 100.0))
+      ->capture_default_str();
+  command
+      .add_option("--min-gain", options.least_gain_mm,
+                  "Joints whose errors gain no more than so many mm of RMSE on held-out data stay "
+                  "nominal; recordings as the calibration's record names them")
+      ->check(FromTo(0.0, 100.0))
+      ->type_name("MM");
+}
+
+/// What single formats need.
+void AddOptionsOfFormats(CLI::App& command, ExportOptions& options) {
+  command
+      .add_option("--prefix", options.prefix,
+                  "Beginning of all names in C; default: the robot's name")
+      ->check(IsNamed)
+      ->type_name("NAME");
+  command
+      .add_option("--mjcf", options.mjcf,
+                  "The nominal MuJoCo model of the robot, for --format mjcf")
+      ->type_name("FILE");
+  command
+      .add_option("--mjcf-joints", options.mjcf_joints,
+                  "Joints that the MuJoCo model calls otherwise than the URDF, as URDF=MJCF; a * "
+                  "on both sides stands for the rest of the name: 'panda_*=*'")
+      ->type_name("NAME");
+  command.add_flag("--mjcf-springs", options.mjcf_springs,
+                   "For --format mjcf: springs in series with the joints, where the calibration "
+                   "is elastic");
+  command.add_flag("--beside-springs", options.beside_springs,
+                   "For formats without springs: the geometry of the elastic model, for programs "
+                   "that correct elasticity themselves (Correct of the run-time library, "
+                   "flex-joints); default: the geometry that predicts best without springs");
+  command
+      .add_option("--hip-damping", options.hip_damping,
+                  "For --format flex_joints: damping of the hips, N.m.s/rad, which no calibration "
+                  "tells")
+      ->check(FromTo(0.0, 1e9))
+      ->type_name("VALUE");
 }
 
 }  // namespace
@@ -49,59 +123,9 @@ void AddExport(CLI::App& app, Action& action) {
   auto options = std::make_shared<ExportCommand>();
   CLI::App* command = app.add_subcommand(
       "export", "Write a calibration in a form that controllers and ROS read (docs/deploy.md)");
-  AddCalibratedRobot(*command, options->calibration, options->project);
-  std::string help = "One of";
-  std::vector<std::string> names;
-  for (const ExportFormat& format : ExportFormats()) {
-    help += fmt::format("{} {}: {}", names.empty() ? "" : ";", format.name, format.what);
-    names.push_back(format.name);
-  }
-  command->add_option("--format", options->options.format, help)
-      ->required()
-      ->transform(CLI::IsMember(names, CLI::ignore_case))
-      ->type_name("NAME");
-  command->add_option("-o,--output", options->output, "The file to write")
-      ->required()
-      ->check(IsNamed)
-      ->type_name("FILE");
-  command
-      ->add_option("--prefix", options->options.prefix,
-                   "Beginning of all names in C; default: the robot's name")
-      ->check(IsNamed)
-      ->type_name("NAME");
-  command
-      ->add_option("--mjcf", options->options.mjcf,
-                   "The nominal MuJoCo model of the robot, for --format mjcf")
-      ->type_name("FILE");
-  command
-      ->add_option("--mjcf-joints", options->options.mjcf_joints,
-                   "Joints that the MuJoCo model calls otherwise than the URDF, as URDF=MJCF; a * "
-                   "on both sides stands for the rest of the name: 'panda_*=*'")
-      ->type_name("NAME");
-  command
-      ->add_option("--min-significance", options->options.least_significance,
-                   "Joints whose errors are all below so many standard deviations stay nominal")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
-  command
-      ->add_option("--min-gain", options->least_gain_mm,
-                   "Joints whose errors gain no more than so many mm of RMSE on held-out data stay "
-                   "nominal; recordings as the calibration's record names them")
-      ->check(CLI::Range(0.0, 100.0))
-      ->type_name("MM");
-  command->add_flag("--mjcf-springs", options->options.mjcf_springs,
-                    "For --format mjcf: springs in series with the joints, where the calibration "
-                    "is elastic");
-  command->add_flag("--beside-springs", options->options.beside_springs,
-                    "For formats without springs: the geometry of the elastic model, for programs "
-                    "that correct elasticity themselves (Correct of the run-time library, "
-                    "flex-joints); default: the geometry that predicts best without springs");
-  command
-      ->add_option("--hip-damping", options->options.hip_damping,
-                   "For --format flex_joints: damping of the hips, N.m.s/rad, which no calibration "
-                   "tells")
-      ->check(CLI::Range(0.0, 1e9))
-      ->type_name("VALUE");
+  AddWhatAndWhere(*command, *options);
+  AddChoiceOfJoints(*command, *options);
+  AddOptionsOfFormats(*command, options->options);
   command->add_flag("--quiet,-q", options->quiet, "Print nothing but warnings and errors");
   command->footer("Example: elastocal export out --format c99 -o talos_model.h");
   command->callback([&action, options] { action = [options] { return Export(*options); }; });

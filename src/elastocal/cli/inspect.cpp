@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/files/output_set.hpp"
@@ -170,7 +171,7 @@ void AddInspect(CLI::App& app, Action& action) {
       ->add_option("--external", options->external,
                    "Whether waist and marker positions come before the joints' parameters (first) "
                    "or after them, as printed in the paper (last)")
-      ->transform(CLI::IsMember({"first", "last"}, CLI::ignore_case))
+      ->transform(OneOf({"first", "last"}))
       ->capture_default_str();
   command->add_flag("--regrouping", options->regrouping,
                     "Show what each dropped parameter is regrouped into");

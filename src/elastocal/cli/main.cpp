@@ -21,8 +21,10 @@
 #include "elastocal/cli/commands.hpp"
 #include "elastocal/cli/completion.hpp"
 #include "elastocal/cli/manual_page.hpp"
+#include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/progress.hpp"
 #include "elastocal/cli/report_page.hpp"
+#include "elastocal/cli/usage_message.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/utf8.hpp"
 #include "elastocal/report/version.hpp"
@@ -37,10 +39,6 @@ void AddCommonOptions(CLI::App& command, CommonOptions& options) {
                   "Seed of all that is drawn at random (postures for identifiability, folds, the "
                   "demo's truth); default 1, or the project's")
       ->check(IsSeed);
-}
-
-std::string IsSeed(const std::string& text) {
-  return text.starts_with('-') ? "a seed is 0 or above" : "";
 }
 
 void AddOutputOptions(CLI::App& command, CommonOptions& options) {
@@ -128,20 +126,6 @@ int Generate(const CLI::App& app, const std::string& what) {
     return kUsage;
   }
   return kFine;
-}
-
-/// What the library says of a command line, with words that it does not expect in quotes: an empty
-/// one would not be seen.
-std::string UsageMessage(const CLI::App* app, const CLI::Error& error) {
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) {
-    return CLI::FailureMessage::simple(app, error);
-  }
-  std::string words;
-  for (const std::string& word : app->remaining(true)) {
-    words += (words.empty() ? "" : ", ") + Quote(word);
-  }
-  return "The following arguments were not expected: " + words +
-         "\nRun with --help for more information.\n";
 }
 
 /// All commands; parsing a command line sets `action`.

@@ -16,6 +16,7 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/files/output_set.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/leave_room.hpp"
 #include "elastocal/planning/plan_motion.hpp"
@@ -125,8 +126,19 @@ void PrintPlan(const Project& project, const MotionPlan& plan, const CommonOptio
   }
 }
 
+/// --approach-mm would not do anything where no touch is planned.
+void RefuseIdleApproach(const PlanCommand& command, const Project& project) {
+  if (command.approach_mm && (!project.contact || !command.kind.empty())) {
+    throw InputError(
+        "--approach-mm: it is for --postures with touches, which only a project with "
+        "contact has; " +
+        project.file.string() + " has none, or --kind is given");
+  }
+}
+
 int Plan(const PlanCommand& command) {
   const Project described = ReadProject(command.project);
+  RefuseIdleApproach(command, described);
   const Project project = LeaveRoom(described, command.limit_margin_deg * M_PI / 180.0);
   std::vector<ChainPostures> postures;
   std::vector<std::string> chains;
@@ -179,8 +191,11 @@ int Plan(const PlanCommand& command) {
   return fell > 0 ? kNotConverged : kFine;
 }
 
-void AddNumber(CLI::App& command, const std::string& name, double& value, const char* help) {
-  command.add_option(name, value, help)->check(InBounds("plan " + name))->capture_default_str();
+CLI::Option* AddNumber(CLI::App& command, const std::string& name, double& value,
+                       const char* help) {
+  return command.add_option(name, value, help)
+      ->check(InBounds("plan " + name))
+      ->capture_default_str();
 }
 
 /// Without it, the robot's own size decides.
@@ -198,12 +213,12 @@ void AddWhat(CLI::App& command, PlanCommand& options) {
   command
       .add_option("--kind", options.kind,
                   "Plan a validation motion of this kind, of all chains, instead")
-      ->transform(CLI::IsMember({"sine", "random", "repeatability"}, CLI::ignore_case))
+      ->transform(OneOf({"sine", "random", "repeatability"}))
       ->excludes(postures);
   command
       .add_option("--count", options.options.validation.random_postures,
                   "Postures of each chain, of --kind random")
-      ->check(CLI::Range(1, 1000))
+      ->check(FromTo(1, 1000))
       ->excludes(postures)
       ->capture_default_str();
 }
@@ -257,22 +272,27 @@ void AddLimits(CLI::App& command, PlanCommand& options) {
 
 /// Robots that play it, and balance.
 void AddRobots(CLI::App& command, PlanCommand& options) {
-  AddNumber(command, "--floor-friction", options.tries.floor_friction,
-            "Friction of the floor that --robots stand on");
   command
       .add_option("--threads", options.options.threads,
                   "Chains planned, and robots tried, at a time")
-      ->check(CLI::Range(1, 64))
+      ->check(FromTo(1, 64))
       ->capture_default_str();
-  command
-      .add_option("--robots", options.tries.robots,
-                  "Play the motion on as many robots with errors, standing free")
-      ->check(CLI::Range(0, 1000));
+  CLI::Option* robots =
+      command
+          .add_option("--robots", options.tries.robots,
+                      "Play the motion on as many robots with errors, standing free")
+          ->check(FromTo(0, 1000));
+  AddNumber(command, "--floor-friction", options.tries.floor_friction,
+            "Friction of the floor that --robots stand on")
+      ->needs(robots);
   AddNumber(command, "--leg-geometry-scale", options.tries.leg_errors,
-            "Factor on the errors of their legs' geometry");
-  command.add_flag("--no-stabiliser", options.unstabilised,
-                   "They follow the motion blindly: nothing corrects it by what the feet and the "
-                   "inertial unit feel");
+            "Factor on the errors of the legs' geometry of --robots")
+      ->needs(robots);
+  command
+      .add_flag("--no-stabiliser", options.unstabilised,
+                "The --robots follow the motion blindly: nothing corrects it by what the feet and "
+                "the inertial unit feel")
+      ->needs(robots);
   command.add_flag("--no-balance", options.unbalanced,
                    "Do not balance, to see what comes of it: the motion is written although it "
                    "breaks its limits");

@@ -25,14 +25,13 @@ std::vector<std::string> SplitAtCommas(const std::string& text) {
   return words;
 }
 
-/// CLI11 tells type and checks as one text: "TEXT:{origin,encoder}", "INT:INT in [2 - 100]",
-/// "FLOAT:POSITIVE".
+/// CLI11 tells type and checks as one text: "TEXT:{origin,encoder}", "INT:from 2 to 100".
 void ReadType(const std::string& type, OptionWords& words) {
   const std::string name = type.substr(0, type.find(':'));
   words.choices = SplitAtCommas(Between(type, "{", "}"));
-  words.range = Between(type, " in [", "]");
-  if (const std::size_t dash = words.range.find(" - "); dash != std::string::npos) {
-    words.range.replace(dash, 3, " to ");
+  const std::string from = ":from ";
+  if (const std::size_t at = type.find(from); at != std::string::npos) {
+    words.range = type.substr(at + from.size());
   }
   const bool is_number = name == "INT" || name == "UINT" || name == "FLOAT";
   words.value = is_number ? "N" : name == "TEXT" ? "VALUE" : name;

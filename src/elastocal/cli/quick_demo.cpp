@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/cli/quick_demo.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -55,7 +56,7 @@ int QuickDemo(const QuickDemoOptions& options) {
   calibrate.project = source.string();
   calibrate.output = folder.string();
   calibrate.recordings = {(folder / "recording.csv").string()};
-  calibrate.folds = 5;
+  calibrate.folds = std::min(5, options.postures);
   CalibrationRun run;
   const int exit_code = RunCalibration(calibrate, &run);
   Print(options.common.Silent(), TruthTable(CompareWithTruth(truth, run.comparison.largest())));

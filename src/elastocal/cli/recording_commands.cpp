@@ -150,11 +150,11 @@ void AddRecording(CLI::App& command, RecordingCommand& options) {
       ->type_name("FILE");
   command
       .add_option("--unit", options.reading.unit, "Unit of length of a file that does not state it")
-      ->transform(CLI::IsMember({"mm", "cm", "m", "in"}, CLI::ignore_case));
+      ->transform(OneOf({"mm", "cm", "m", "in"}));
   command
       .add_option("--time-unit", options.reading.time_unit,
                   "Unit of the time of a joint log that does not state it (default: s)")
-      ->transform(CLI::IsMember({"s", "ms", "us", "ns"}, CLI::ignore_case));
+      ->transform(OneOf({"s", "ms", "us", "ns"}));
   command
       .add_option("--topic", options.reading.joints_topic,
                   "Topic of the joint states, where a bag has several")
@@ -196,9 +196,9 @@ void AddConvert(CLI::App& app, Action& action) {
   command
       ->add_option("--up", options->up,
                    "Axis of the cameras' frame that points up, where the file does not say")
-      ->transform(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}, CLI::ignore_case));
+      ->transform(OneOf({"x", "y", "z", "-x", "-y", "-z"}));
   command->add_option("--part", options->part, "What to write of a file that has both")
-      ->transform(CLI::IsMember({"markers", "joints"}, CLI::ignore_case));
+      ->transform(OneOf({"markers", "joints"}));
   command->add_flag("--quiet,-q", options->common.quiet, "Print nothing but warnings and errors");
   command->footer(
       "The commands that take recordings read these files as they are; nothing has to be "

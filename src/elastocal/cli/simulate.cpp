@@ -192,7 +192,7 @@ int Simulate(const SimulateCommand& command) {
 void AddMotionOptions(CLI::App& command, SimulateCommand& options) {
   command
       .add_option("--trials", options.trials,
-                  "Which are played: all, calibration, validation, or the name of one")
+                  "Trials to play: all, calibration, validation, or the name of one")
       ->capture_default_str();
   auto* postures =
       command
@@ -202,23 +202,23 @@ void AddMotionOptions(CLI::App& command, SimulateCommand& options) {
           ->type_name("FILE");
   command
       .add_option("--count", options.count,
-                  "With contact or instruments and no --postures: so many random postures (30) "
-                  "for each plate, and for instruments")
-      ->check(CLI::Range(1, 1000))
+                  "In projects with contact or instruments, without --postures: number of random "
+                  "postures for each plate, and for instruments (30)")
+      ->check(FromTo(1, 1000))
       ->excludes(postures);
   command
       .add_option("--motion", options.motion, "Plays this joint trajectory instead (CSV with time)")
       ->excludes(postures)
       ->type_name("FILE");
   command
-      .add_option("--chains", options.chains, "Chains that they exercise; default: those that move")
+      .add_option("--chains", options.chains,
+                  "Chains that --motion or --postures exercise; default: those that move")
       ->type_name("NAME");
   command
       .add_option("--kind", options.kind,
-                  "What they are for: calibration, sine, random or repeatability; default: "
+                  "What --motion or --postures are for; default: "
                   "calibration where the robot rests, else sine")
-      ->transform(
-          CLI::IsMember({"calibration", "sine", "random", "repeatability"}, CLI::ignore_case));
+      ->transform(OneOf({"calibration", "sine", "random", "repeatability"}));
 }
 
 /// Robots that execute a motion by what a calibration says of them.
@@ -235,26 +235,26 @@ void AddDeployOptions(CLI::App& command, SimulateCommand& options) {
                   "What the controller of --deploy knows: nominal, urdf (the calibrated one) or "
                   "compensated; default: each in turn")
       ->needs(deploy)
-      ->transform(CLI::IsMember({"nominal", "urdf", "compensated"}, CLI::ignore_case));
+      ->transform(OneOf({"nominal", "urdf", "compensated"}));
   command
       .add_option("--stabiliser", options.stabiliser,
                   "Whether the robots of --deploy are balanced by what feet and inertial unit "
                   "feel: with, without, or both, which takes twice as long")
       ->needs(deploy)
-      ->transform(CLI::IsMember({"with", "without", "both"}, CLI::ignore_case))
+      ->transform(OneOf({"with", "without", "both"}))
       ->capture_default_str();
   command
       .add_option("--until-s", options.until_s,
                   "Time of the motion until which the robots of --deploy play it, s; default: to "
                   "its end")
       ->needs(deploy)
-      ->check(CLI::Range(1.0, 1e6));
+      ->check(FromTo(1.0, 1e6));
 }
 
 /// How it is played and recorded.
 void AddPlayOptions(CLI::App& command, SimulateCommand& options) {
   command.add_option("--threads", options.threads, "Trials played at a time")
-      ->check(CLI::Range(1, 64))
+      ->check(FromTo(1, 64))
       ->capture_default_str();
   command
       .add_option("--settings", options.settings,

@@ -189,7 +189,7 @@ void AddValidate(CLI::App& app, Action& action) {
                    "Of tables of observations: what is registered anew, each posture by the others "
                    "of the file: "
                    "table (with it trackers, walls, wires and cameras in the room)")
-      ->transform(CLI::IsMember({"table"}, CLI::ignore_case))
+      ->transform(OneOf({"table"}))
       ->type_name("WHAT");
   AddAcceptOption(*command, options->accept);
   AddCommonOptions(*command, options->common);

@@ -39,36 +39,68 @@ struct Parsed {
   std::vector<std::string> names;  ///< what stood there, but for numbers
 };
 
-/// The length of the place that a warning begins with ("my table.csv:45", "day 2/left.csv"): up to
-/// a colon and a blank, after the ending of a file and perhaps numbers of lines. 0 without one.
-std::size_t LengthOfPlace(const std::string& warning) {
+/// Whether a text ends as the name of a file does, perhaps with numbers of lines behind it
+/// ("left.csv", "A-B.csv:45").
+bool EndsAsFile(std::string text) {
   constexpr std::array kEndings = {".csv", ".tsv",  ".trc", ".c3d", ".npz", ".yaml", ".yml",
                                    ".txt", ".json", ".bag", ".db3", ".xml", ".urdf", ".mcap"};
-  const std::size_t colon = warning.find(": ");
-  if (colon == std::string::npos) return 0;
-  std::string file = warning.substr(0, colon);
-  const std::size_t line = file.find_last_not_of("0123456789:");
-  if (line != std::string::npos && line + 1 < file.size() && file[line + 1] == ':') {
-    file.resize(line + 1);
+  const std::size_t line = text.find_last_not_of("0123456789:");
+  if (line != std::string::npos && line + 1 < text.size() && text[line + 1] == ':') {
+    text.resize(line + 1);
   }
-  std::transform(file.begin(), file.end(), file.begin(),
+  std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const bool is_file = std::any_of(kEndings.begin(), kEndings.end(),
-                                   [&](const char* ending) { return file.ends_with(ending); });
-  return is_file ? colon : 0;
+  return std::any_of(kEndings.begin(), kEndings.end(),
+                     [&](const char* ending) { return text.ends_with(ending); });
+}
+
+/// The length of the place that a warning begins with ("my table.csv:45", "day 2/left.csv"): up to
+/// a colon and a blank. 0 without one.
+std::size_t LengthOfPlace(const std::string& warning) {
+  const std::size_t colon = warning.find(": ");
+  return colon != std::string::npos && EndsAsFile(warning.substr(0, colon)) ? colon : 0;
+}
+
+/// How many words before the end of a file's name belong to the name as well, which may have
+/// blanks: those behind a preposition ("of day 2/arm A-B.csv:45"); none without one.
+std::size_t WordsOfName(const std::vector<std::string>& before) {
+  constexpr std::array kPrepositions = {"in", "of", "at", "from", "by", "and", "to", "with"};
+  for (std::size_t count = 0; count < before.size(); ++count) {
+    const std::string& word = before[before.size() - 1 - count];
+    const bool ends =
+        word.ends_with(',') || word.ends_with(':') || word.ends_with(';') ||
+        std::find(kPrepositions.begin(), kPrepositions.end(), word) != kPrepositions.end();
+    if (ends) return count;
+  }
+  return 0;
+}
+
+/// The words of a sentence of which a name is one word, whatever blanks are in it.
+std::vector<std::string> WordsOf(const std::string& sentence) {
+  std::vector<std::string> words;
+  std::istringstream stream(sentence);
+  for (std::string word; stream >> word;) {
+    if (EndsAsFile(Core(word))) {
+      for (std::size_t count = WordsOfName(words); count > 0; --count) {
+        word.insert(0, words.back() + " ");
+        words.pop_back();
+      }
+    }
+    words.push_back(word);
+  }
+  return words;
 }
 
 Parsed Parse(const std::string& warning) {
   Parsed parsed;
   std::vector<std::string> pattern;
   const std::size_t place = LengthOfPlace(warning);
-  if (place > 0) {  // one name, whatever blanks are in it
+  if (place > 0) {
     parsed.names.push_back(warning.substr(0, place));
     pattern.emplace_back("*:");
   }
-  std::istringstream words(warning.substr(place > 0 ? place + 1 : 0));
   std::string before;
-  for (std::string word; words >> word;) {
+  for (std::string word : WordsOf(warning.substr(place > 0 ? place + 1 : 0))) {
     const std::string core = Core(word);
     const bool varies =
         core.find_first_of("0123456789_.-") != std::string::npos || NamesAnother(before);

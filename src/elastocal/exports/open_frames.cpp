@@ -12,6 +12,10 @@
 namespace elastocal {
 namespace {
 
+constexpr const char* kHeading =
+    "Frames that the recording could not tell, with standard deviations; places of three markers "
+    "on each would (calibrate --marker-places):";
+
 const ParameterEstimate* FindUnsupported(const CalibrationEstimate& estimate,
                                          const std::string& name) {
   const auto found = std::ranges::find(estimate.parameters, name, &ParameterEstimate::name);
@@ -24,7 +28,7 @@ const ParameterEstimate* FindUnsupported(const CalibrationEstimate& estimate,
 
 std::vector<std::string> DescribeOpenFrames(const Project& project,
                                             const CalibrationEstimate& estimate) {
-  std::vector<std::string> sentences;
+  std::vector<std::string> lines;
   std::set<int> told;
   for (const Chain& chain : project.chains) {
     const Link& tip = project.tree.links[Size(chain.tip_link)];
@@ -33,21 +37,15 @@ std::vector<std::string> DescribeOpenFrames(const Project& project,
     const ParameterEstimate* turn = FindUnsupported(estimate, joint + ".theta");
     const ParameterEstimate* along = FindUnsupported(estimate, joint + ".r");
     if (turn == nullptr && along == nullptr) continue;
-    const std::string axis = "the axis of " + joint;
     std::string open;
-    if (turn != nullptr) {
-      open = fmt::format("turned about {} ({:.2f} deg sd)", axis, turn->sd * 180.0 / M_PI);
-    }
+    if (turn != nullptr) open = fmt::format("{:.2f} deg about", turn->sd * 180.0 / M_PI);
     if (along != nullptr) {
-      open += fmt::format("{}displaced along {} ({:.1f} mm sd)", open.empty() ? "" : " and ",
-                          open.empty() ? axis : "it", 1e3 * along->sd);
+      open += fmt::format("{}{:.1f} mm along", open.empty() ? "" : ", ", 1e3 * along->sd);
     }
-    sentences.push_back(fmt::format(
-        "Link {} may be {}, which nothing has told: measure where three of its markers are on it, "
-        "and calibrate with --marker-places",
-        tip.name, open));
+    lines.push_back(fmt::format("  {}: {} the axis of {}", tip.name, open, joint));
   }
-  return sentences;
+  if (!lines.empty()) lines.insert(lines.begin(), kHeading);
+  return lines;
 }
 
 }  // namespace elastocal

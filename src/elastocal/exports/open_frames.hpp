@@ -10,8 +10,8 @@
 namespace elastocal {
 
 /// Hands and feet whose last joint has a turn about its axis, or a place along it, that nothing has
-/// told (status unsupported), a sentence each: which frame that leaves open by how much, and which
-/// measurement would tell it.
+/// told (status unsupported). The first line says what would tell them, each further one which
+/// frame is open by how much; no lines where there is no such frame.
 std::vector<std::string> DescribeOpenFrames(const Project& project,
                                             const CalibrationEstimate& estimate);
 

@@ -276,41 +276,61 @@ std::vector<std::filesystem::path> ObservationFiles(
   return files;
 }
 
-ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>& recordings,
-                                        const Project& project,
-                                        const std::vector<ContactFoot>* feet) {
-  const std::vector<std::filesystem::path> files = ObservationFiles(recordings);
-  if (files.empty()) throw InputError("no recording; one or more were expected");
-  ObservationTables tables;
-  tables.setup = project.contact->setup;
-  std::vector<ObservationFile> read;
-  std::vector<std::filesystem::path> detections;
+namespace {
+
+/// The files of a recording by their kind.
+struct ReadFiles {
+  std::vector<ObservationFile> tables;
+  std::vector<std::filesystem::path> detections;  ///< tables of corners, not read yet
   RepeatedRows repeated;
-  Eigen::Index rows = 0;
+};
+
+ReadFiles ReadByKind(const std::vector<std::filesystem::path>& files, const Project& project) {
+  if (files.empty()) throw InputError("no recording; one or more were expected");
+  ReadFiles read;
   for (auto at = files.begin(); at != files.end(); ++at) {
     const std::filesystem::path& file = *at;
     if (std::find(files.begin(), at, file) != at) {
       throw InputError(file.string() + ": the file is given twice; its rows would count twice");
     }
     if (IsDetectionTable(file)) {
-      detections.push_back(file);
-      continue;
+      read.detections.push_back(file);
+    } else {
+      read.tables.push_back(ReadObservationFile(file, project, read.repeated));
     }
-    read.push_back(ReadObservationFile(file, project, repeated));
-    rows += read.back().postures.q.rows();
   }
-  if (read.empty()) {
+  if (read.tables.empty()) {
     throw InputError(files.front().string() +
                      ": this is a table of corners; a table of observations with the positions of "
                      "the joints and a column 'frame' was expected beside it");
   }
-  Observations& observations = tables.observations;
-  observations.q.resize(rows, project.tree.coordinate_count());
+  return read;
+}
+
+/// The postures of all tables, one below the other.
+Eigen::MatrixXd PosturesOf(const std::vector<ObservationFile>& tables, int coordinates) {
+  Eigen::Index rows = 0;
+  for (const ObservationFile& file : tables) rows += file.postures.q.rows();
+  Eigen::MatrixXd q(rows, coordinates);
   rows = 0;
-  for (const ObservationFile& file : read) {
-    observations.q.middleRows(rows, file.postures.q.rows()) = file.postures.q;
+  for (const ObservationFile& file : tables) {
+    q.middleRows(rows, file.postures.q.rows()) = file.postures.q;
     rows += file.postures.q.rows();
   }
+  return q;
+}
+
+}  // namespace
+
+ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>& recordings,
+                                        const Project& project,
+                                        const std::vector<ContactFoot>* feet) {
+  ReadFiles read_files = ReadByKind(ObservationFiles(recordings), project);
+  std::vector<ObservationFile>& read = read_files.tables;
+  ObservationTables tables;
+  tables.setup = project.contact->setup;
+  Observations& observations = tables.observations;
+  observations.q = PosturesOf(read, project.tree.coordinate_count());
   if (feet != nullptr) {
     tables.setup.feet = *feet;
   } else if (!tables.setup.feet.empty()) {
@@ -325,13 +345,13 @@ ObservationTables ReadObservationTables(const std::vector<std::filesystem::path>
     }
     for (std::string& warning : read[f].warnings) tables.warnings.push_back(std::move(warning));
   }
-  AddDetections(detections, project, PosturesOfFrames(read), tables);
+  AddDetections(read_files.detections, project, PosturesOfFrames(read), tables);
   NoteApproach(observations);
   if (observations.all.empty()) {
     throw InputError(observations.files.front() +
                      ": in no row does an instrument show anything or a plate touch");
   }
-  if (std::string warning = repeated.Warning(); !warning.empty()) {
+  if (std::string warning = read_files.repeated.Warning(); !warning.empty()) {
     tables.warnings.push_back(std::move(warning));
   }
   if (PlatesAreNamedNowhere(read, project)) {

@@ -24,17 +24,17 @@ struct CalibratedRobot {
 CalibratedRobot OpenCalibratedRobot(const std::filesystem::path& given,
                                     const std::filesystem::path& project = {});
 
-/// The recordings that it was made from, as runs.json beside it names them: tables, or folders of
-/// trials. Throws InputError where there is no such record, or a recording is not there or has
-/// changed since (by its checksum).
+/// The recordings that the calibration was made from, as runs.json beside it names them: tables, or
+/// folders of trials. Throws InputError where there is no such record, or a recording is not there
+/// or has changed since (by its checksum).
 std::vector<std::filesystem::path> RecordedRecordings(const CalibratedRobot& robot);
 
-/// What it was told beside them, as runs.json has it; nothing where a record of an earlier version
-/// does not say so.
+/// What calibrate was told beside the recordings, by runs.json. Empty for a record of an earlier
+/// version, which did not store it.
 Assumptions RecordedAssumptions(const CalibratedRobot& robot);
 
-/// All that the record of the calibration names as its inputs, whether it is there or not; nothing
-/// where there is no record that can be read. No output may replace them.
+/// All inputs that the record of the calibration names, whether or not the files still exist; empty
+/// without a readable record. No output may replace these files.
 std::vector<std::filesystem::path> RecordedFiles(const CalibratedRobot& robot);
 
 /// Whether the calibration (its calibration.yaml) was made from one of these files, as the record
@@ -43,7 +43,7 @@ std::vector<std::filesystem::path> RecordedFiles(const CalibratedRobot& robot);
 bool IsOwnRecording(const std::filesystem::path& calibration,
                     const std::vector<std::filesystem::path>& files);
 
-/// The same, and adds a warning then.
+/// The same; if it was, adds a warning.
 bool WarnOfOwnRecording(const std::filesystem::path& calibration,
                         const std::vector<std::filesystem::path>& files,
                         std::vector<std::string>& warnings);

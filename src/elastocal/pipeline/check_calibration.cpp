@@ -59,6 +59,19 @@ std::vector<std::string> DescribePlay(const JointCheck& check, const StoredCalib
   return texts;
 }
 
+/// What `estimate` leaves: in all, and rms over the markers of each posture.
+void MeasureLeft(const EarlierFit& fit, const CalibrationOptions& options, CheckRun& run) {
+  const auto seen = SeenMask(fit.measured.calibration);
+  const Eigen::MatrixXd distances = DistancesBy(fit, options);
+  run.rmse_estimate = ComputeMetrics(distances, seen).rmse_3d;
+  run.left.setZero(distances.rows());
+  for (Eigen::Index i = 0; i < run.left.size(); ++i) {
+    const Eigen::ArrayXd counts = seen.row(i).cast<double>().transpose();
+    const double squares = (counts * distances.row(i).transpose().array().square()).sum();
+    run.left[i] = std::sqrt(squares / std::max(1.0, counts.sum()));
+  }
+}
+
 }  // namespace
 
 CheckRun CheckCalibration(const Project& given, const std::filesystem::path& calibration_file,
@@ -77,16 +90,8 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
                                    options.joints, project);
   const Recording& postures = fit.measured.calibration;
   run.expected_error = ExpectedError(fit.robot.model, postures, project.calibration.prior);
-  const auto seen = SeenMask(postures);
-  const Eigen::MatrixXd distances = DistancesBy(fit, project.calibration);
-  run.rmse_estimate = ComputeMetrics(distances, seen).rmse_3d;
   run.left_before = fit.stored.rmse_3d;
-  run.left.setZero(postures.posture_count());
-  for (Eigen::Index i = 0; i < run.left.size(); ++i) {
-    const Eigen::ArrayXd counts = seen.row(i).cast<double>().transpose();
-    const double squares = (counts * distances.row(i).transpose().array().square()).sum();
-    run.left[i] = std::sqrt(squares / std::max(1.0, counts.sum()));
-  }
+  MeasureLeft(fit, project.calibration, run);
 
   // The joints as calibrated.
   const auto as_calibrated = [&](const RecordedModel& robot, const Recording& of) {

@@ -36,14 +36,16 @@ struct CheckRun {
   /// Whether the calibrated robot errs by less than twice what one that was never calibrated is
   /// expected to. Otherwise "nothing has moved" would only mean that no single joint explains it.
   bool plausible() const;
-  /// What no robot whose joints may have moved is to leave: four times what the calibration did, m.
+  /// The largest error that a robot with moved joints may leave: four times that of the
+  /// calibration, m.
   double most_left() const;
   /// Whether the robot, with every joint free to have moved, leaves no more than that.
   bool explained() const { return !(rmse_estimate > most_left()); }
-  /// Whether an alternative explains what otherwise takes several joints, or none does.
+  /// Whether the recording is to blame: an alternative explains the misfit, which moved joints do
+  /// not, or only several of them.
   bool recording_explains() const;
-  /// Whether the robot as calibrated leaves more than `most_left`, and no joint is accused of it:
-  /// too few postures, or markers, tell which one.
+  /// Whether the robot as calibrated leaves more than `most_left` and no joint is accused of it:
+  /// the postures, or the markers, are too few to tell which joint it is.
   bool changed_beyond_telling() const;
   /// Whether the calibration still explains the robot.
   bool unchanged() const;

@@ -60,26 +60,27 @@ ObservedCauses ChooseObservedCauses(const Project& project, const ObservedRobot&
 std::vector<std::string> StoredCauses(const RobotTree& tree,
                                       const std::map<std::string, double>& joint_errors);
 
-/// Of the causes of a calibration with all of them, the one that is least, if zero is within the
-/// region of its parameters that has the probability of two standard deviations: another cause, or
-/// a spring, explains what it was found by. Parameters that are doubtful one by one may be plain
-/// together.
+/// The least significant cause of a calibration that has several, if zero lies within the region of
+/// two standard deviations of all its parameters together: another cause, or a spring, then
+/// explains what it was found by. (Each parameter alone may be doubtful although the cause is
+/// plain.) Nothing where every cause is significant.
 std::optional<std::string> IdleCause(const CalibrationResult& result);
 
-/// Those that no export and no `compensate` applies, because they depend on more than positions and
-/// loads.
+/// Of these causes, those that neither an export nor `compensate` applies, because they depend on
+/// more than positions and loads.
 std::vector<std::string> NeverApplied(const std::vector<std::string>& causes);
 
-/// What errors hold with that contain springs, or not, and these causes: "compensation of
-/// elasticity and j.gear".
+/// What a controller must compensate for the stated errors to hold: "compensation of elasticity and
+/// j.gear". `springs`: whether elasticity is a part of it.
 std::string CompensationInWords(bool springs, const std::vector<std::string>& causes);
 
-/// What to say where these causes were taken of a robot that the project holds rigid, and elastic
-/// joints would plainly predict better.
+/// A warning: these causes were taken of a robot that the project holds rigid, and elastic joints
+/// would plainly predict better.
 std::string DescribeForbiddenSprings(const std::vector<std::string>& causes);
 
-/// What to say where a calibration with these causes is put to use; empty where all are applied.
-/// `at_run_time`: in a robot at run time, which knows what motion and loads tell.
+/// A warning for whoever uses a calibration with these causes, which names those that are not
+/// applied; empty where all are. `at_run_time`: in a robot at run time, which applies what depends
+/// on motion and loads.
 std::string NotApplied(const std::vector<std::string>& causes, bool at_run_time);
 
 }  // namespace elastocal

@@ -16,27 +16,26 @@ struct ContactCheck {
   std::string calibration_file, recording;
   Observations observations;
   ObservedRobot model;
-  /// Tables, trackers and mountings fitted, the robot nominal, as calibrated, and with every joint
-  /// free to have moved.
+  /// Errors after tables, trackers and mountings were fitted: of the nominal robot, of the robot as
+  /// calibrated, and of one whose joints may all have moved.
   ObservationFigures uncalibrated, calibrated, updated;
   std::vector<double> left_before;  ///< by row of the figures: noise that the calibration left, SI
   JointCheck check;
   bool converged = false;
   std::vector<std::string> mistakes;  ///< in the tables, which say nothing of the robot
-  /// Faults of the tables without each of which the calibration holds: they explain it as well as
-  /// joints that have moved.
+  /// Faults of the tables, each of which explains the misfit as well as moved joints do: once it is
+  /// corrected, the calibration holds.
   std::vector<std::string> alternatives;
-  /// Whether single postures are the first of them: they are likelier to be wrong than joints to
-  /// have moved.
+  /// Whether the first of these are single bad postures, which are more likely than moved joints.
   bool few_postures = false;
   std::vector<std::string> warnings;  ///< what is left out among them
 
-  /// Rows of the figures that leave more than four times what the calibration left, and more than a
-  /// fiftieth of what robots leave at most (LargestError).
+  /// Rows of the figures with errors of more than four times what the calibration left, and of more
+  /// than a fiftieth of the largest that a robot has (LargestError).
   std::vector<std::string> FarRows(const ObservationFigures& figures) const;
   bool explained() const { return FarRows(updated).empty(); }
-  /// Whether an alternative explains what otherwise takes several joints, or none does, or what a
-  /// single posture alone shows.
+  /// Whether the recording is to blame: an alternative explains the misfit, which moved joints do
+  /// not, or only several of them, or which a single posture alone shows.
   bool recording_explains() const;
   /// Whether the robot as calibrated leaves too much, and no joint is accused of it.
   bool changed_beyond_telling() const { return !check.changed() && !FarRows(calibrated).empty(); }

@@ -270,6 +270,38 @@ ContactStart StartContacts(const Project& project,
   return start;
 }
 
+namespace {
+
+/// The nominal robot with what is beside it estimated, and what is wrong with the tables. Returns
+/// how many folds they still allow: none where a mistake in them would be held out as well.
+int EstimateUncalibrated(const ContactRunOptions& options, int folds, ContactRun& run) {
+  run.uncalibrated = Estimate(run.model, run.observations, false, options, folds);
+  if (!LargeErrors(run.model, run.uncalibrated.in_sample).empty()) {
+    run.mistakes = FindObservedMistakes(run.model, run.observations);
+    if (!run.mistakes->empty()) {
+      run.uncalibrated.held_out = {};
+      return 0;
+    }
+  }
+  if (ExchangeSessions(run) || LeaveOutTouchesInTheAir(run)) {
+    folds = std::min(folds, run.observations.posture_count());
+    run.uncalibrated = Estimate(run.model, run.observations, false, options, folds);
+  }
+  return folds;
+}
+
+/// The geometry that the URDF has, which may be of a fit of its own, and the URDF with it.
+void MakeUrdf(const Project& project, ZeroOffsets zero_offsets, int equations, ContactRun& run) {
+  if (run.rigid_model) {
+    run.in_urdf = ResultOfContacts(*run.rigid_model, run.geometric->estimate.fit, equations);
+  }
+  run.urdf = MakeCalibratedUrdf(ReadFile(project.urdf), project.urdf.string(),
+                                run.in_urdf ? *run.in_urdf : run.result, zero_offsets);
+  run.warnings.insert(run.warnings.end(), run.urdf->warnings.begin(), run.urdf->warnings.end());
+}
+
+}  // namespace
+
 ContactRun CalibrateContacts(const Project& project,
                              const std::vector<std::filesystem::path>& recordings,
                              const ContactRunOptions& options) {
@@ -283,20 +315,8 @@ ContactRun CalibrateContacts(const Project& project,
   run.warnings = std::move(start.warnings);
   const int postures = run.observations.posture_count();
   run.closure = CheckClosure(run.model, run.observations.q);
-  int folds = options.folds.value_or(std::min(kUsualFolds, postures));
-  run.uncalibrated = Estimate(run.model, run.observations, false, options, folds);
-  if (!LargeErrors(run.model, run.uncalibrated.in_sample).empty()) {
-    run.mistakes = FindObservedMistakes(run.model, run.observations);
-    if (!run.mistakes->empty()) {
-      folds = 0;
-      run.uncalibrated.held_out = {};
-    }
-  }
-  if ((!run.mistakes || run.mistakes->empty()) &&
-      (ExchangeSessions(run) || LeaveOutTouchesInTheAir(run))) {
-    folds = std::min(folds, run.observations.posture_count());
-    run.uncalibrated = Estimate(run.model, run.observations, false, options, folds);
-  }
+  const int folds =
+      EstimateUncalibrated(options, options.folds.value_or(std::min(kUsualFolds, postures)), run);
   run.calibrated = Estimate(run.model, run.observations, true, options, folds);
   if (earlier) {
     run.extra = CausesOf(run.model.robot.elasticity.corrections);
@@ -324,14 +344,7 @@ ContactRun CalibrateContacts(const Project& project,
   }
   run.result = ResultOfContacts(run.model, fit, equations);
   JudgeContacts(run);
-  if (run.deployable()) {
-    if (run.rigid_model) {
-      run.in_urdf = ResultOfContacts(*run.rigid_model, run.geometric->estimate.fit, equations);
-    }
-    run.urdf = MakeCalibratedUrdf(ReadFile(project.urdf), project.urdf.string(),
-                                  run.in_urdf ? *run.in_urdf : run.result, options.zero_offsets);
-    run.warnings.insert(run.warnings.end(), run.urdf->warnings.begin(), run.urdf->warnings.end());
-  }
+  if (run.deployable()) MakeUrdf(project, options.zero_offsets, equations, run);
   if (!run.extra.empty()) run.warnings.push_back(NotApplied(run.extra, false));
   for (std::string& outlier :
        DescribeOutliers(run.model, run.observations, run.calibrated.estimate)) {

@@ -13,9 +13,9 @@ namespace elastocal {
 /// What the recordings say about a chain of the project.
 struct ChainCoverage {
   std::string chain;
-  /// Whether markers on the chain were seen in what is estimated from, in trials that exercise it
-  /// or all its joints as those of other chains. If not, its joints stay as the URDF has them, but
-  /// for those that it shares with other chains or stands on.
+  /// Whether the chain is calibrated: markers on it were seen in trials that are estimated from and
+  /// that exercise it, or that exercise all of its joints with other chains. If not, its joints
+  /// stay as the URDF has them, except those that it shares with other chains or stands on.
   bool calibrated = false;
   bool judged = false;               ///< whether markers on it were seen in trials for validation
   std::vector<std::string> refused;  ///< trials for calibration of it that cannot be used, and why
@@ -29,17 +29,16 @@ struct ChainCoverage {
 /// Of the chains that carry markers, in the project's order.
 std::vector<ChainCoverage> FindCoverage(const Project& project, const Measurements& measured);
 
-/// Objections where trials for calibration cannot be used: links on which the robot stands alone in
-/// one of these or in a trial for validation, and in no trial that is estimated from. The springs
-/// of that leg's ankle are those of the prior then, even where its chain is calibrated from others.
-/// Nothing where legs are rigid.
+/// Objections: one for each link on which the robot stands alone in a trial for calibration that
+/// cannot be used, or in a trial for validation, but in no trial that is estimated from. The
+/// springs of that leg's ankle then stay those of the prior, even if other trials calibrate its
+/// chain. None where legs are rigid.
 std::vector<std::string> UnknownStance(const Project& project, const Measurements& measured);
 
-/// Adds an objection for each chain that stays uncalibrated because its trials cannot be used: who
-/// records a chain expects it to be calibrated. Another for each chain that trials for validation
-/// exercise and no trial for calibration: more likely, `chains` of a trial is wrong. And a remark
-/// for each that was calibrated and is not judged although others are, or of which joints were not
-/// seen.
+/// Adds an objection for each chain that stays uncalibrated because its trials cannot be used
+/// (whoever records a chain expects it to be calibrated), and for each chain that only trials for
+/// validation exercise (`chains` of a trial is probably wrong). Adds a remark for each calibrated
+/// chain that is not judged although others are, or that has joints of which nothing was seen.
 void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict);
 
 }  // namespace elastocal

@@ -18,19 +18,20 @@ struct ExperimentData {
   std::optional<ElasticityChoice> open_elasticity;
 };
 
-/// Cross-validation that decides on each fold, from its training postures alone: torque sensors
-/// that contradict statics, clusters that were knocked and, in a table of at most kMostNested
-/// postures, elastic joints where the project leaves them open; beside all that an estimate decides
-/// (CrossValidate). A left-out posture has a knocked cluster where the order of time says; between
-/// the last training posture before a knock and the first one after it, the cluster is not
-/// predicted. `robot`, `comparison`: of all postures.
+/// Cross-validation in which each fold decides anew, from its training postures alone: all that an
+/// estimate decides (CrossValidate), and beside it torque sensors that contradict statics,
+/// clusters that were knocked and, in a table of at most kMostNested postures, which joints are
+/// elastic where the project leaves that open. The time of a left-out posture says whether a
+/// cluster is the one before or after a knock; between the last training posture before a knock and
+/// the first one after it, the cluster is not predicted. `robot`, `comparison`: of all postures.
 CrossValidation CrossValidateExperiment(const ExperimentData& data, const RecordedModel& robot,
                                         const ModelComparison& comparison, const FoldOptions& folds,
                                         const Progress& progress = {});
 
 inline constexpr int kMostNested = 300;
 
-/// What the folds take as all postures together decided it: "elasticity", "causes".
+/// What the folds do not decide anew but take as all postures together decided it: "elasticity",
+/// "causes".
 std::vector<std::string> DecidedOnce(const ExperimentData& data, bool causes_chosen);
 
 }  // namespace elastocal

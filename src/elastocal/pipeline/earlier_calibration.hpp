@@ -27,9 +27,9 @@ void CheckApplies(const StoredCalibration& calibration, const Project& project,
 /// What a stored calibration says of the robot `days` later: its estimates, and their covariance
 /// with the drift of each parameter since then added to it (a random walk: project key
 /// calibration.drift, a part of the prior's standard deviation in a day). Biases of torque sensors
-/// are of a day and not among them. Markers are those on links where they are the same in
-/// `markers`, with by how little they are found again. Throws InputError for a calibration without
-/// covariance.csv.
+/// differ from day to day and are left out. Markers are known on those links only on which
+/// `markers` says that they stayed, as exactly as they were found again. Throws InputError for a
+/// calibration without covariance.csv.
 EarlierEstimate MakeEarlierEstimate(const CalibrationEstimate& calibration, const ErrorModel& model,
                                     const CalibrationOptions& options, double days,
                                     const std::vector<LinkMarkers>& markers = {});
@@ -53,30 +53,34 @@ EarlierFit FitAfterEarlier(const std::filesystem::path& calibration, double days
                            const Measurements& measured, std::optional<std::uint64_t> seed,
                            const JointCheckOptions& options, Project& project);
 
-/// The earlier estimate as wide as the data have it (JointCheck::widened), that counts, for joints
-/// that have moved or may have, as little as what is known of a new robot.
+/// The earlier estimate with its covariance widened as the data ask for (JointCheck::widened). Of
+/// joints that have moved, or may have, it knows no more than is known of a new robot.
 EarlierEstimate ForgetMoved(const JointCheck& check, const EarlierEstimate& earlier,
                             const ErrorModel& model, const Prior& prior);
 
-/// The earlier estimate as the prior of an update: `after` so many of the `days`, in which zeros
-/// drifted, as make the data most probable (what has not drifted need not be doubted), and with
-/// what ForgetMoved does. `estimate`: of the new data, fitted with `fitted_with`.
+/// The earlier estimate as the prior of an update. Zeros have drifted for the part of `days` that
+/// makes the data most probable, because a zero that has not drifted need not be doubted; `after`
+/// gives the estimate after so many days. Joints that have moved are treated as by ForgetMoved.
+/// `estimate`: of the new data, fitted with `fitted_with`.
 EarlierEstimate MostProbable(const JointCheck& check, const CalibrationResult& estimate,
                              const EarlierEstimate& fitted_with, double days,
                              const std::function<EarlierEstimate(double days)>& after,
                              const Prior& prior);
 
-/// The same of what the fit leaves of its earlier calibration; of markers, those that stayed and
-/// cannot have moved instead of a joint.
+/// MostProbable for the earlier calibration of `fit`. Of its markers, those are known that stayed
+/// and that cannot have moved in place of a joint.
 EarlierEstimate KnownAfter(const EarlierFit& fit, double days, const CalibrationOptions& options);
 
-/// These joints, a sentence each. `source`: the earlier calibration.
+/// A sentence for each joint whose earlier estimate does not count any more. `source`: the earlier
+/// calibration.
 std::vector<std::string> DescribeForgotten(const JointCheck& check, const std::string& source);
 
-/// That it is less exact than it says, a sentence; none where that may be chance.
+/// A sentence that says that the earlier calibration is less exact than it claims; none where that
+/// may be chance.
 std::vector<std::string> DescribeWidened(const JointCheck& check, const std::string& source);
 
-/// That it was made from the recording that is calibrated now, a sentence.
+/// The sentence that the earlier calibration was made from the very recording that is calibrated
+/// now.
 std::string CountsTwice(const std::string& source);
 
 /// Takes an earlier calibration as the prior of the project's estimates. What it says of joints
@@ -87,8 +91,8 @@ std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibrati
                                           const Measurements& measured,
                                           std::optional<std::uint64_t> seed, Project& project);
 
-/// Says it where an update, which errs by `updated` (m, 3-D) on postures that were left out,
-/// predicts them clearly worse than the calibration that it began with; else empty.
+/// A warning where an update predicts left-out postures clearly worse than the calibration that it
+/// began with; else empty. `updated`: its error on these postures (m, 3-D).
 std::string DescribeWorseUpdate(const std::filesystem::path& calibration,
                                 const RecordedModel& robot, const Recording& recording,
                                 CalibrationOptions options, double updated);

@@ -15,17 +15,17 @@ namespace elastocal {
 std::string DescribeTouchesInTheAir(const ObservedRobot& model, const Observations& observations,
                                     const std::vector<TouchInTheAir>& air);
 
-/// Leaves touches in the air (FindTouchesInTheAir) out of the observations; whether there were
-/// some. A few are a warning; where they are more than a quarter of a plate's touches, as of
-/// outliers, `wrong_rows` is the objection: too few are left to tell which are right.
+/// Leaves touches in the air (FindTouchesInTheAir) out of the observations, and returns whether
+/// there were any. A few of them give a warning. More than a quarter of a plate's touches give the
+/// objection `wrong_rows`, as with outliers: too few are left to tell which are right.
 bool LeaveOutTouchesInTheAir(ContactRun& run);
 
 /// "3 of 40 rows seem to be of another session (contact.sessions, or the file) than they say: ...".
 std::string DescribeOtherSessions(const std::vector<OtherSession>& found,
                                   const Observations& observations);
 
-/// Takes rows with the session of others (FindExchangedSessions) as of those; `wrong_rows` is the
-/// objection that names them. Whether there were some.
+/// Gives rows that are of another session than they say (FindExchangedSessions) to that session,
+/// and returns whether there were any. `wrong_rows` is then the objection that names them.
 bool ExchangeSessions(ContactRun& run);
 
 }  // namespace elastocal

@@ -18,9 +18,9 @@ struct OffAlone {
   double rms_of_others = 0.0;  ///< SI
 };
 
-/// The observations without which such rows are off by no more than `most` (root mean square, SI):
-/// at most a quarter of the instrument's, those that are off most first. None where there are no
-/// such few, or where fewer than four would be left.
+/// The few observations of an instrument to leave out so that its others are off by no more than
+/// `most` (root mean square, SI), the worst first: at most a quarter of them. None where more would
+/// have to go, or where fewer than four would be left.
 OffAlone FindOffAlone(const ObservedRobot& model, const Observations& observations,
                       const RowErrors& row, double most, const PredictObservations& predict);
 

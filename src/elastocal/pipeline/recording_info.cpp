@@ -116,6 +116,48 @@ std::string ConvertMarkers(RecordingFile& file, const std::string& up) {
   return text.insert(text.find("DATA_INCLUDED"), kDescription);
 }
 
+/// An option of reading, and the formats in which it tells something.
+struct IdleCheck {
+  bool given;
+  const char* option;
+  const char* needs;  ///< in words
+  std::vector<std::string> formats;
+};
+
+/// Throws InputError for an option that would do nothing with a file of this format.
+void RefuseIdleOptions(const std::string& path, const std::string& format,
+                       const ReaderOptions& options) {
+  const std::vector<std::string> bags = {"MCAP", "ROS 1 bag", "ROS 2 bag (db3)"};
+  const std::vector<std::string> timed = {"NumPy .npz", "joint log (CSV)"};
+  const std::vector<std::string> measured = {"C3D", "Vicon Nexus CSV", "OptiTrack Motive CSV",
+                                             "TRC"};
+  const std::vector<IdleCheck> checks = {
+      {!options.joints_topic.empty(), "--topic", "bags", bags},
+      {!options.tf_frame.empty(), "--tf-frame", "bags", bags},
+      {!options.tf_bodies.empty(), "--tf-bodies", "bags", bags},
+      {options.salvage, "--salvage", "bags", bags},
+      {!options.time_unit.empty(), "--time-unit", "joint logs (CSV or .npz)", timed},
+      {!options.unit.empty(), "--unit", "C3D, TRC and the CSV of Vicon and Motive", measured}};
+  for (const IdleCheck& check : checks) {
+    if (!check.given || std::ranges::find(check.formats, format) != check.formats.end()) continue;
+    throw InputError(path + " (" + format + "): " + check.option + " is for " + check.needs +
+                     "; it would do nothing here");
+  }
+}
+
+/// The part of a file that has one. Throws InputError where it has both or none.
+RecordingPart OnlyPart(const std::string& path, const RecordingFile& file) {
+  if (file.markers && file.joints) {
+    throw InputError(path +
+                     ": has markers and joints; say which by --part markers or --part joints");
+  }
+  if (!file.markers && !file.joints) {
+    throw InputError(path + " (" + file.format + "): there are no markers in it: " +
+                     file.why_no_markers + "; nor joint positions: " + file.why_no_joints);
+  }
+  return file.joints ? RecordingPart::kJoints : RecordingPart::kMarkers;
+}
+
 ConvertedRecording ConvertJoints(JointLog& log) {
   ConvertedRecording converted;
   for (Eigen::Index k = 0; k < log.torques.cols(); ++k) {
@@ -135,6 +177,7 @@ ConvertedRecording ConvertJoints(JointLog& log) {
 RecordingInfo DescribeRecording(const std::string& file, const ReaderOptions& options, int parts) {
   RecordingInfo info;
   info.file = ReadAnyRecording(file, options);
+  RefuseIdleOptions(file, info.file.format, options);
   if (info.file.markers) {
     for (int m = 0; m < info.file.markers->marker_count(); ++m) {
       info.sights.push_back(LookAt(*info.file.markers, m, parts));
@@ -204,18 +247,8 @@ ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions
                      ": this is a posture table, which calibrate takes as it is; a recording of "
                      "cameras or a robot over time was expected");
   }
-  if (part == RecordingPart::kOnlyOne) {
-    if (file.markers && file.joints) {
-      throw InputError(path +
-                       ": has markers and joints; say which by --part markers or --part "
-                       "joints");
-    }
-    if (!file.markers && !file.joints) {
-      throw InputError(path + " (" + file.format + "): there are no markers in it: " +
-                       file.why_no_markers + "; nor joint positions: " + file.why_no_joints);
-    }
-    part = file.joints ? RecordingPart::kJoints : RecordingPart::kMarkers;
-  }
+  RefuseIdleOptions(path, file.format, options);
+  if (part == RecordingPart::kOnlyOne) part = OnlyPart(path, file);
   if (part == RecordingPart::kMarkers) {
     if (file.markers) {
       ConvertedRecording converted{ConvertMarkers(file, up), file.salvaged};
@@ -231,6 +264,7 @@ ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions
                      "): there are no markers in it: " + file.why_no_markers);
   }
   if (file.joints) {
+    if (!up.empty()) throw InputError(path + ": --up is for markers; it would do nothing here");
     ConvertedRecording converted = ConvertJoints(*file.joints);
     converted.warnings.insert(converted.warnings.begin(), file.salvaged.begin(),
                               file.salvaged.end());

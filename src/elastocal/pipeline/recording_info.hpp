@@ -27,6 +27,7 @@ struct RecordingInfo {
 };
 
 /// Looks through a file of any format (ReadAnyRecording), whose time is divided into `parts`.
+/// Throws InputError for an option that does nothing with a file of this format, too.
 RecordingInfo DescribeRecording(const std::string& file, const ReaderOptions& options, int parts);
 
 /// As JSON (docs/formats.md).
@@ -43,7 +44,8 @@ struct ConvertedRecording {
 /// The file in the program's own format: markers as Qualisys TSV in mm with six decimals, turned
 /// so that z points up, or joints as CSV. `up`: the axis that points up, where the file does not
 /// say. Throws InputError: what ReadAnyRecording refuses; a file without this part; a posture
-/// table; both parts with kOnlyOne; an axis that nobody says or that contradicts the file.
+/// table; both parts with kOnlyOne; an axis that nobody says or that contradicts the file; an
+/// option that does nothing with this file.
 ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions& options,
                                     RecordingPart part, const std::string& up);
 

@@ -146,5 +146,26 @@ TEST(RecordingInfoTest, ConvertsOnePartOfABag) {
       {"no poses", "no joint states in the topic '/no'"});
 }
 
+TEST(RecordingInfoTest, OptionsThatWouldDoNothingAreRefused) {
+  const ScratchFolder folder;
+  const std::string log = folder.Write("log.csv", "t,hip\n0,0\n0.01,0\n0.02,0\n");
+  const std::string bag = SourceFile("tests/recordings/bag_zstd.mcap");
+  const auto refused = [](const std::string& file, const ReaderOptions& options,
+                          const std::string& name) {
+    ExpectInputError([&] { DescribeRecording(file, options, 8); }, {name, "do nothing"});
+    ExpectInputError([&] { ConvertRecording(file, options, RecordingPart::kJoints, ""); },
+                     {name, "do nothing"});
+  };
+  refused(log, {.joints_topic = "/joint_states"}, "--topic");
+  refused(log, {.tf_frame = "room"}, "--tf-frame");
+  refused(log, {.tf_bodies = {"hand"}}, "--tf-bodies");
+  refused(log, {.salvage = true}, "--salvage");
+  refused(log, {.unit = "mm"}, "--unit");
+  refused(bag, {.time_unit = "ms"}, "--time-unit");
+  ExpectInputError([&] { ConvertRecording(log, {}, RecordingPart::kJoints, "z"); }, {"--up"});
+  EXPECT_NO_THROW(DescribeRecording(log, {.time_unit = "s"}, 8));
+  EXPECT_NO_THROW(DescribeRecording(bag, {.salvage = true}, 8));
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -271,9 +271,10 @@ JointMotion WithOpenJointsAtRest(const Project& project, JointMotion motion) {
   return motion;
 }
 
-CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
-                                   const JointMotion& given,
-                                   const CompensateMotionOptions& options) {
+namespace {
+
+/// Throws InputError for a robot whose commands cannot be corrected.
+void CheckCanBeCorrected(const Project& project, const RuntimeModel& model) {
   for (const Sole& sole : project.soles) {
     if (!sole.ball_radius) continue;
     throw InputError(project.file.string() + ": sole '" +
@@ -284,25 +285,47 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
   if (model.tips.empty()) {
     throw InputError(project.file.string() + ": " + NothingToCorrect());
   }
+}
+
+/// The robot that the plan was made for, and how it keeps its balance; empty where that is not
+/// known.
+struct PlannedBalance {
+  std::unique_ptr<StandingRobot> robot;
+  std::optional<CalibratedBalance> balance;
+};
+
+/// Stores zero-moment point and torques of the plan in the result, where they are known.
+PlannedBalance BalanceOfPlan(const Project& project, const JointMotion& planned, MotionLoads loads,
+                             CompensatedMotion& result) {
+  PlannedBalance of;
+  if (CanBeChecked(project, planned)) {
+    of.robot = StandProjectRobot(project, {});
+    MotionForces forces;
+    const SampledMotion sampled = ToSampled(*of.robot, planned);
+    CheckMotion(*of.robot, sampled, &forces);
+    result.planned.zmp = forces.zmp;
+    result.planned.torques = forces.torques;
+    of.balance.emplace(*of.robot, sampled, std::move(forces));
+  } else if (loads == MotionLoads::kPlanned) {
+    throw InputError(planned.source +
+                     ": torques of the plan need its times and support, and the project's soles");
+  }
+  return of;
+}
+
+}  // namespace
+
+CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& model,
+                                   const JointMotion& given,
+                                   const CompensateMotionOptions& options) {
+  CheckCanBeCorrected(project, model);
   CompensatedMotion result;
   result.at_rest = OpenJoints(project, given);
   const JointMotion planned = WithOpenJointsAtRest(project, given);
   result.planned.motion = planned;
   JointMotion& motion = result.planned.motion;
-  std::unique_ptr<StandingRobot> robot;
-  std::optional<CalibratedBalance> balance;
-  if (CanBeChecked(project, planned)) {
-    robot = StandProjectRobot(project, {});
-    MotionForces forces;
-    const SampledMotion sampled = ToSampled(*robot, planned);
-    CheckMotion(*robot, sampled, &forces);
-    result.planned.zmp = forces.zmp;
-    result.planned.torques = forces.torques;
-    balance.emplace(*robot, sampled, std::move(forces));
-  } else if (options.loads == MotionLoads::kPlanned) {
-    throw InputError(planned.source +
-                     ": torques of the plan need its times and support, and the project's soles");
-  }
+  PlannedBalance of_plan = BalanceOfPlan(project, planned, options.loads, result);
+  std::optional<CalibratedBalance>& balance = of_plan.balance;
   Compensator compensator(model);
   CalibratedClearance clearance(project);
   result.has_clearance = !clearance.empty();

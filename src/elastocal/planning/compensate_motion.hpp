@@ -24,21 +24,21 @@ struct MotionExtreme {
   std::string where = {};  ///< a joint or a pair of parts
 };
 
-/// What limits leave at the end of a limb over a motion: a distance, to which an angle counts as
-/// its displacement at 0.3 m.
+/// How far limits keep the end of a limb from its place in a motion: a distance, to which an angle
+/// counts as its displacement at 0.3 m.
 struct LeftAtLimb {
   std::string limb;  ///< a chain of the project
   MotionExtreme most;
   int samples = 0;  ///< in which it is more than kLeftOver_m
-  /// It has fewer than six joints and shares some with a limb of six, which goes first: the end of
-  /// a head on a trunk that carries arms.
+  /// Whether the limb has fewer than six joints and shares some with a limb of six or more, whose
+  /// end has priority: the end of a head on a trunk that carries arms.
   bool yields = false;
 };
 
 inline constexpr double kLeftOver_m = 2e-4;
 
-/// A planned motion with other joint positions: those with which the calibrated robot has hands,
-/// feet and waist where the plan meant.
+/// A planned motion with corrected joint positions, which bring hands, feet and waist of the
+/// calibrated robot to where the plan meant them.
 struct CompensatedMotion {
   std::vector<std::string> at_rest;  ///< joints that the motion leaves open
   PlannedMotion planned;             ///< zero-moment points and torques are those of the plan
@@ -60,7 +60,7 @@ struct CompensatedMotion {
   /// the end of a limb too far from its place, a joint beyond its limit or faster than it, parts
   /// that touch. Empty: it may be played.
   std::vector<std::string> broken;
-  /// The same of limits that leave less than that.
+  /// Of limits that keep a limb from its place by less than that, a sentence each.
   std::vector<std::string> warnings;
 };
 

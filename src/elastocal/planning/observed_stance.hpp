@@ -67,11 +67,12 @@ class ObservedPostureSampler {
 /// The plate as it is described; `edge`: m.
 PhysicalPlate DescribedPlate(const ContactPlate& plate, double edge = 0.08);
 
-/// The coordinates with which a hand moves its plate: of the joints before it that no foot and no
-/// other plate needs, or of all where these are fewer than three.
+/// The coordinates with which a hand moves its plate: those of joints that carry it and that no
+/// foot and no other plate needs; if these are fewer than three, those of all joints that carry it.
 std::vector<int> HandCoordinates(const RobotTree& tree, const ObservationSetup& setup, int plate);
 
-/// The joints before the link of a plate that are not of a foot's leg, of the robot in a posture.
+/// The joints that carry a plate but are not of a leg with a foot of `contact`, for a robot in this
+/// posture.
 MovingChain HandOf(const RobotTree& tree, const ObservationSetup& setup, int plate,
                    const Eigen::VectorXd& q);
 

@@ -103,11 +103,12 @@ SimulationRun SimulateExperiment(const Project& project, const SimulationOptions
 /// The run for programs (JSON).
 std::string FormatSimulationSummary(const SimulationRun& run);
 
-/// A project as the virtual experiment takes it.
+/// What the virtual experiment needs of a project.
 DescribedRobot DescribeRobot(const Project& project);
 
-/// The name of the trial that plays a file: that of the file without extension and `_motion`, what
-/// is no letter, digit, '_', '.' or '-' as '_'. It is part of file names.
+/// The name of the trial that plays a file, which becomes a part of file names: the name of the
+/// file without extension and `_motion`; characters other than letters, digits, '_', '.' and '-'
+/// become '_'.
 std::string TrialNameOf(const std::filesystem::path& file);
 
 /// Options that play the trajectory of a file (CSV; docs/formats.md, Motion).

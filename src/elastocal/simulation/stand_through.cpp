@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/robot/statics.hpp"
@@ -96,6 +97,117 @@ double TrackingError(const TrueRobot& robot, const Eigen::VectorXd& encoders,
   return largest;
 }
 
+/// A robot that stands by itself while it plays a motion.
+class StandingPlay {
+ public:
+  StandingPlay(const TrueRobot& robot, const std::vector<Sole>& soles, const JointMotion& motion,
+               const PhysicsOptions& physics, const StandThroughOptions& options)
+      : robot_(robot),
+        soles_(soles),
+        motion_(motion),
+        options_(options),
+        commanded_(options.commanded != nullptr ? *options.commanded : motion.q),
+        body_(robot, FeetOf(soles), commanded_.row(0).transpose(), physics),
+        height_(body_.Height()),
+        per_look_(std::max(1L, std::lround(kLook / body_.time_step_s()))),
+        interval_s_(static_cast<double>(per_look_) * body_.time_step_s()),
+        correction_(Eigen::VectorXd::Zero(motion.q.cols())) {}
+
+  StandingRun Run() {
+    if (options_.stabiliser == nullptr || options_.R_world_root_at_rest) {
+      Settle();
+    } else {
+      LetGo();
+    }
+    return Play();
+  }
+
+ private:
+  static std::vector<int> FeetOf(const std::vector<Sole>& soles) {
+    std::vector<int> feet;
+    for (const Sole& sole : soles) feet.push_back(sole.link);
+    return feet;
+  }
+
+  StandingSense Felt() const { return Sense(body_, soles_.size(), R_root_unit_); }
+
+  void Correct(Eigen::Index sample, const Eigen::VectorXd& planned) {
+    const std::vector<int>& support = motion_.support[static_cast<std::size_t>(sample)];
+    correction_ = options_.stabiliser->Correct(planned, support, Felt(), interval_s_) - planned;
+  }
+
+  /// In the first posture, until the robot rests; how the unit is mounted may be seen from there.
+  void Settle() {
+    body_.Settle(kLongestSettling);
+    if (!options_.R_world_root_at_rest) return;
+    R_root_unit_ = body_.WaistPose().linear().transpose() * *options_.R_world_root_at_rest;
+    if (options_.stabiliser == nullptr) return;
+    options_.stabiliser->TakeRest(motion_.q.row(0).transpose(), motion_.support.front(), Felt());
+  }
+
+  /// The hands let go slowly, so that a robot with errors stands by itself at the end.
+  void LetGo() {
+    Hands hands(robot_, body_, height_);
+    const long looks = std::lround(kLongestSettling / interval_s_);
+    for (long i = 0; i < looks; ++i) {
+      const double held = 1.0 - static_cast<double>(i + 1) / static_cast<double>(looks);
+      body_.Command(commanded_.row(0).transpose() + correction_);
+      for (long step = 0; step < per_look_; ++step) {
+        body_.PushWaist(held * hands.Hold(body_, body_.time_step_s()));
+        body_.Step();
+      }
+      Correct(0, motion_.q.row(0).transpose());
+    }
+    body_.PushWaist(Vector6d::Zero());
+  }
+
+  StandingRun Play() {
+    const Transform begin = body_.WaistPose();
+    StandingRun run;
+    run.least_zmp_margin = std::numeric_limits<double>::infinity();
+    const double first = motion_.time_s[0], last = motion_.time_s[motion_.time_s.size() - 1];
+    const auto steps = static_cast<long>(std::floor((last - first) / body_.time_step_s()));
+    Between now;
+    for (long i = 1; i <= steps; ++i) {
+      run.time_s = static_cast<double>(i) * body_.time_step_s();
+      MoveTo(motion_, first + run.time_s, now);
+      body_.Command(now.Of(commanded_) + correction_);
+      body_.Step();
+      if (i % per_look_ != 0) continue;
+      if (body_.FallenFrom(height_)) return run;
+      Look(begin, now, run);
+    }
+    run.stood = true;
+    return run;
+  }
+
+  /// What is measured every hundredth of a second, and what the stabiliser then does.
+  void Look(const Transform& begin, const Between& now, StandingRun& run) {
+    const double upright = body_.WaistPose().linear().col(2).dot(begin.linear().col(2));
+    run.largest_lean = std::max(run.largest_lean, std::acos(std::clamp(upright, -1.0, 1.0)));
+    run.tracking = std::max(
+        run.tracking, TrackingError(robot_, body_.Encoders(), now.Of(commanded_) + correction_));
+    run.least_zmp_margin = std::min(run.least_zmp_margin, ZmpMargin(body_, soles_));
+    const Eigen::VectorXd planned = now.Of(motion_.q);
+    if (options_.watch) options_.watch(now.at, planned, body_);
+    if (options_.stabiliser == nullptr) return;
+    Correct(now.at, planned);
+    run.largest_shift = std::max(run.largest_shift, options_.stabiliser->shift().norm());
+  }
+
+  const TrueRobot& robot_;
+  const std::vector<Sole>& soles_;
+  const JointMotion& motion_;
+  const StandThroughOptions& options_;
+  const Eigen::MatrixXd& commanded_;
+  VirtualRobot body_;
+  double height_;  // of what falls, m
+  long per_look_;  // steps of the simulation between two looks
+  double interval_s_;
+  Eigen::Matrix3d R_root_unit_ = Eigen::Matrix3d::Identity();
+  Eigen::VectorXd correction_;  // by the stabiliser, to what is commanded
+};
+
 }  // namespace
 
 StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
@@ -103,71 +215,7 @@ StandingRun StandThrough(const TrueRobot& robot, const std::vector<Sole>& soles,
                          const StandThroughOptions& options) {
   physics.standing = Standing::kFree;
   physics.soles = soles;
-  std::vector<int> feet;
-  for (const Sole& sole : soles) feet.push_back(sole.link);
-  const Eigen::MatrixXd& commanded = options.commanded != nullptr ? *options.commanded : motion.q;
-  VirtualRobot body(robot, feet, commanded.row(0).transpose(), physics);
-  const double height = body.Height();
-  const long per_look = std::max(1L, std::lround(kLook / body.time_step_s()));
-  const double interval = static_cast<double>(per_look) * body.time_step_s();
-  Eigen::Matrix3d R_root_unit = Eigen::Matrix3d::Identity();
-  Eigen::VectorXd correction = Eigen::VectorXd::Zero(motion.q.cols());
-  const auto correct = [&](Eigen::Index sample, const Eigen::VectorXd& planned,
-                           const StandingSense& sense) {
-    const std::vector<int>& support = motion.support[static_cast<std::size_t>(sample)];
-    correction = options.stabiliser->Correct(planned, support, sense, interval) - planned;
-  };
-  if (options.stabiliser == nullptr || options.R_world_root_at_rest) {
-    body.Settle(kLongestSettling);
-    if (options.R_world_root_at_rest) {
-      R_root_unit = body.WaistPose().linear().transpose() * *options.R_world_root_at_rest;
-      if (options.stabiliser != nullptr) {
-        options.stabiliser->TakeRest(motion.q.row(0).transpose(), motion.support.front(),
-                                     Sense(body, soles.size(), R_root_unit));
-      }
-    }
-  } else {  // the hands let go slowly, so that a robot with errors stands by itself at the end
-    Hands hands(robot, body, height);
-    const long looks = std::lround(kLongestSettling / interval);
-    for (long i = 0; i < looks; ++i) {
-      const double held = 1.0 - static_cast<double>(i + 1) / static_cast<double>(looks);
-      body.Command(commanded.row(0).transpose() + correction);
-      for (long step = 0; step < per_look; ++step) {
-        body.PushWaist(held * hands.Hold(body, body.time_step_s()));
-        body.Step();
-      }
-      correct(0, motion.q.row(0).transpose(), Sense(body, soles.size(), R_root_unit));
-    }
-    body.PushWaist(Vector6d::Zero());
-  }
-  const Transform begin = body.WaistPose();
-  StandingRun run;
-  run.least_zmp_margin = std::numeric_limits<double>::infinity();
-  const double first = motion.time_s[0], last = motion.time_s[motion.time_s.size() - 1];
-  const auto steps = static_cast<long>(std::floor((last - first) / body.time_step_s()));
-  Between now;
-  for (long i = 1; i <= steps; ++i) {
-    run.time_s = static_cast<double>(i) * body.time_step_s();
-    MoveTo(motion, first + run.time_s, now);
-    body.Command(now.Of(commanded) + correction);
-    body.Step();
-    if (i % per_look != 0) continue;
-    const Transform waist = body.WaistPose();
-    if (body.FallenFrom(height)) return run;
-    const double upright = waist.linear().col(2).dot(begin.linear().col(2));
-    run.largest_lean = std::max(run.largest_lean, std::acos(std::clamp(upright, -1.0, 1.0)));
-    run.tracking = std::max(run.tracking,
-                            TrackingError(robot, body.Encoders(), now.Of(commanded) + correction));
-    const StandingSense sense = Sense(body, soles.size(), R_root_unit);
-    run.least_zmp_margin = std::min(run.least_zmp_margin, ZmpMargin(body, soles));
-    const Eigen::VectorXd planned = now.Of(motion.q);
-    if (options.watch) options.watch(now.at, planned, body);
-    if (options.stabiliser == nullptr) continue;
-    correct(now.at, planned, sense);
-    run.largest_shift = std::max(run.largest_shift, options.stabiliser->shift().norm());
-  }
-  run.stood = true;
-  return run;
+  return StandingPlay(robot, soles, motion, physics, options).Run();
 }
 
 }  // namespace elastocal

@@ -159,22 +159,31 @@ for (const [name, file] of Object.entries(files)) {
   });
 
   test(`${name}: every figure gives its data as CSV`, async () => {
-    const atOnce = 8;  // Chromium asks the user at the eleventh download of a page
-    for (let first = 0, all = 1; first < all; first += atOnce) {
-      const {page, problems} = await openPage(browser, file);
-      await waitForViewer(page);
-      const buttons = await page.$$('figure .figure-head button');
-      all = buttons.length;
-      assert.equal(all, await page.$$eval('figure', (figures) => figures.length));
-      for (const button of buttons.slice(first, first + atOnce)) {
-        const [download] = await Promise.all([page.waitForEvent('download'), button.evaluate((b) => b.click())]);
-        const lines = readFileSync(await download.path(), 'utf8').trimEnd().split('\n');
-        assert.match(download.suggestedFilename(), /\.csv$/);
-        assert.ok(lines.length > 1, download.suggestedFilename());
-      }
-      assert.deepEqual(problems, []);
-      await page.close();
+    const {page, problems} = await openPage(browser, file);
+    await waitForViewer(page);
+    const buttons = await page.$$('figure .figure-head button');
+    assert.equal(buttons.length, await page.$$eval('figure', (figures) => figures.length));
+    const saved = [];
+    const real = 8;  // Chromium asks the user at the eleventh download of a page
+    for (const button of buttons.slice(0, real)) {
+      const [download] = await Promise.all([page.waitForEvent('download'), button.evaluate((b) => b.click())]);
+      saved.push([download.suggestedFilename(), readFileSync(await download.path(), 'utf8')]);
     }
+    // Of the others, what the page would hand to the browser: opening it once more takes longer than all of this.
+    saved.push(...await page.evaluate((others) => {
+      const names = [], blobs = [];
+      URL.createObjectURL = (blob) => { blobs.push(blob); return 'blob:kept'; };
+      HTMLAnchorElement.prototype.click = function () { names.push(this.download); };
+      for (const button of others) button.click();
+      return Promise.all(blobs.map(async (blob, i) => [names[i], await blob.text()]));
+    }, buttons.slice(real)));
+    assert.equal(saved.length, buttons.length);
+    for (const [name, text] of saved) {
+      assert.match(name, /\.csv$/);
+      assert.ok(text.trimEnd().split('\n').length > 1, name);
+    }
+    assert.deepEqual(problems, []);
+    await page.close();
   });
 
   test(`${name}: the executed robots end where the data have them`, async () => {
