@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/posture/dexterity.hpp"
 #include "elastocal/posture/exchange.hpp"
 #include "elastocal/project/project.hpp"
 #include "tests/mujoco_oracle.hpp"
@@ -82,6 +83,21 @@ void ExpectFeasibleInMujoco(const ChainDesign& design) {
   }
 }
 
+/// By default a leg stays away from singular postures.
+void ExpectDexterous(const ChainDesign& design) {
+  const RobotTree& tree = Talos().tree;
+  MovingChain chain(tree, design.setup.coordinates, Talos().motion.rest);
+  const int tip = design.setup.tip_link;
+  const bool is_leg = design.setup.name.starts_with("leg");
+  EXPECT_EQ(design.setup.dexterity_share, is_leg ? 0.5 : 0.0);
+  const double least = design.setup.dexterity_share * LeastSingularValue(chain, tip);
+  EXPECT_EQ(is_leg, least > 0.1);
+  for (const Eigen::VectorXd& q : design.postures) {
+    chain.Move(q(design.setup.coordinates));
+    EXPECT_GE(LeastSingularValue(chain, tip), least - 1e-6);
+  }
+}
+
 class EachChain : public testing::TestWithParam<int> {};
 
 TEST_P(EachChain, IsDesignedFeasiblyOnBothSides) {
@@ -94,6 +110,7 @@ TEST_P(EachChain, IsDesignedFeasiblyOnBothSides) {
   const ChainDesign design = DesignChain(model, base.kept, Talos().motion, setup, options);
   ASSERT_EQ(design.postures.size(), 8u) << design.blame;
   ExpectFeasibleInMujoco(design);
+  ExpectDexterous(design);
   if (setup.mirror.empty()) return;
 
   const Chain& opposite = FindChain(setup.mirror);
@@ -109,6 +126,7 @@ TEST_P(EachChain, IsDesignedFeasiblyOnBothSides) {
       MirrorDesign(design, *mirror, other_model, other_base.kept, Talos().motion, *other, options);
   ASSERT_EQ(mirrored.postures.size(), design.postures.size());
   ExpectFeasibleInMujoco(mirrored);
+  ExpectDexterous(mirrored);
   // Link masses and marker clusters of the two sides differ by less than a millimetre or so.
   EXPECT_NEAR(mirrored.index, design.index, 0.02 * design.index);
 }
@@ -126,6 +144,7 @@ class PlainLeg : public testing::Test {
         base_([&] {
           setup_.contacts.clear();
           setup_.floor_z.reset();
+          setup_.dexterity_share = 0.0;
           motion_.effort_share = 1e3;
           for (int c : setup_.coordinates) {  // without the project's margin
             const Joint& joint = model_.tree.joints[model_.tree.coordinate_joint[c]];

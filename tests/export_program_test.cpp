@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
+#include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 #include <yaml-cpp/yaml.h>
 
@@ -329,6 +330,45 @@ TEST_F(Program, AZeroThatMeasuredPlacesTellIsAGain) {
     EXPECT_NEAR(pal["elbow_joint"]["offset"].as<double>(), 0.01, 2e-3);
     EXPECT_NEAR(pal[last]["offset"].as<double>(), measured ? 0.02 : 0.0, 2e-3);
   }
+}
+
+// Beside measured places, validate shows a zero that no marker tells; diagnose takes those of the
+// calibration.
+TEST_F(Program, ValidateAndDiagnoseKnowMeasuredPlaces) {
+  const Project project = ReadProject(project_);
+  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
+  truth[FindParameter(model.parameters, "flange_joint.theta")] = 0.02;
+  truth[FindParameter(model.parameters, "elbow_joint.theta")] = 0.01;
+  const std::string other = (scratch_.path() / "other.csv").string();
+  WritePostureTable(recording_, MakeSyntheticRecording(model, truth, {.postures = 40, .seed = 4}),
+                    project.tree);
+  WritePostureTable(other, MakeSyntheticRecording(model, truth, {.postures = 40, .seed = 5}),
+                    project.tree);
+  std::vector<MarkerMeasurement> places;
+  for (const Marker& marker : model.markers) {
+    places.push_back({marker.name, marker.p_link_marker, 5e-6});  // more than the data say
+  }
+  const std::string table =
+      " --marker-places " + scratch_.Write("p.csv", FormatMarkerPlaces(places));
+  const std::string json = (scratch_.path() / "result.json").string();
+  const auto error_of = [&](const std::string& more) {
+    RunProgram("validate " + project_ + " --calibration " + out_ + " --recording " + other +
+               " --json " + json + more);
+    return nlohmann::json::parse(ReadFile(json))["rmse_3d_mm_all"]["calibrated"].get<double>();
+  };
+  ASSERT_EQ(Calibrate(project_, recording_, kFewFolds).exit_code, 0);
+  const double noise = error_of("");
+  EXPECT_GT(error_of(table), 1.3 * noise);
+  ASSERT_EQ(Calibrate(project_, recording_, kFewFolds + table).exit_code, 0);
+  EXPECT_LT(error_of(table), 1.1 * noise);
+  const ProgramResult frozen = RunProgram("validate " + project_ + " --calibration " + out_ +
+                                          " --recording " + other + " --frozen" + table);
+  EXPECT_EQ(frozen.exit_code, 3);
+  EXPECT_NE(frozen.err.find("nothing is fitted beside them"), std::string::npos) << frozen.err;
+  EXPECT_EQ(RunProgram("diagnose " + out_ + " --json " + json).exit_code, 0);
+  scratch_.Write("p.csv", "no table");  // diagnose reads it
+  EXPECT_EQ(RunProgram("diagnose " + out_).exit_code, 3);
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ TEST(RuntimeAllocation, NoCallAllocates) {
   allocations = 0;
   counting = true;
   robot.LimitChanges(q);
+  robot.EaseChanges(10.0);
   for (StandingFeet feet : {0U, 1U, 2U, 3U, 7U}) {
     robot.Forward(q, none, feet);
     robot.Correct(q, torque, feet);

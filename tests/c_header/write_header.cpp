@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
   Eigen::VectorXd q, most = project.motion.rest;
   for (Eigen::Index c = 0; c < most.size(); ++c) most[c] = c % 2 != 0 ? 0.005 : -1.0;
   robot.LimitChanges(most);
+  robot.EaseChanges(4.0);
   for (int i = 0; i < 60; ++i) {
     const bool goes_on = i >= 40;  // near the last one: Command follows
     if (!goes_on) q = project.motion.rest;

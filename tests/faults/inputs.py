@@ -144,7 +144,7 @@ def full_project(urdf):
         "standing": {"soles": [{"link": "tool", "lower_mm": [-105, -65], "upper_mm": [105, 65]}]},
         "design": {"rest_deg": {"elbow_joint": 20}, "limit_margin": 0.02,
                    "range_deg": {"elbow_joint": [-60, 60]}, "effort_share": 1,
-                   "motion_effort_share": 1,
+                   "motion_effort_share": 1, "dexterity_share": 0.5,
                    "chains": [{"chain": "arm", "support": [], "cone_deg": 60, "floor_mm": -1000,
                                "box_mm": {"lower": [-350, -50, -1080], "upper": [350, 350, -650]},
                                "contacts": [["A", "B"]]}],

@@ -113,6 +113,7 @@ MotionTrialOptions TrialOptions(const PlanCommand& command) {
 
 void PrintPlan(const Project& project, const MotionPlan& plan, const CommonOptions& common) {
   PrintWarnings(plan.left_out, common.verbose);
+  PrintWarnings(plan.beyond_ranges, common.verbose);
   const bool quiet = common.Silent();
   if (project.soles.empty()) {
     Print(quiet, "The project has no soles: the root link is held still, nothing is balanced\n\n");

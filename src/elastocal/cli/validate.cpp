@@ -14,6 +14,7 @@
 #include "elastocal/cli/report_page.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/io/marker_places_file.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
@@ -33,6 +34,7 @@ struct ValidateOptions {
   bool frozen = false;
   std::string refit;  ///< "table"; empty: nothing
   std::vector<std::string> accept;
+  std::string marker_places;  ///< table of measured ones; empty: none
 };
 
 std::string Table(const ValidationRun& run) {
@@ -111,9 +113,12 @@ std::vector<std::string> ErrorsOf(const ValidationRun& run) {
 }
 
 CommandResult ValidateByMarkers(const ValidateOptions& options, const Project& project) {
-  const ValidationRun run = ValidateCalibration(
-      project, options.calibration, options.recording.front(),
-      {.frozen = options.frozen, .seed = options.common.seed, .accept = options.accept});
+  const ValidationRun run =
+      ValidateCalibration(project, options.calibration, options.recording.front(),
+                          {.frozen = options.frozen,
+                           .seed = options.common.seed,
+                           .accept = options.accept,
+                           .marker_places = options.marker_places});
   return {.files = {},
           .json = MakeValidationJson(run),
           .text = RunText(run),
@@ -125,6 +130,11 @@ CommandResult ValidateByMarkers(const ValidateOptions& options, const Project& p
 void RefuseOtherKindsOptions(const ValidateOptions& options, const Project& project) {
   if (project.contact) {
     if (options.frozen) throw InputError("--frozen is about markers; touches have --refit table");
+    if (!options.marker_places.empty()) {
+      throw InputError(
+          "--marker-places is about markers in recordings without contact and "
+          "instruments");
+    }
     return;
   }
   if (!options.refit.empty()) throw InputError("--refit table is about touches of a table");
@@ -144,6 +154,10 @@ int Validate(const ValidateOptions& options) {
   RefuseOtherKindsOptions(options, project);
   std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
   inputs.push_back(FindCalibrationFiles(options.calibration).calibration);
+  if (!options.marker_places.empty()) {
+    ReadMarkerPlaces(options.marker_places, project);  // refused before what takes long
+    inputs.emplace_back(options.marker_places);
+  }
   OutputSet outputs;
   outputs.Protect(inputs);
   if (!folder.empty()) DeclareResults(folder, {"validation.json"}, outputs);
@@ -192,6 +206,11 @@ void AddValidate(CLI::App& app, Action& action) {
       ->transform(OneOf({"table"}))
       ->type_name("WHAT");
   AddAcceptOption(*command, options->accept);
+  command
+      ->add_option("--marker-places", options->marker_places,
+                   "Where markers are on their links, as measured there (docs/formats.md): beside "
+                   "them waist and markers are refitted")
+      ->type_name("FILE");
   AddCommonOptions(*command, options->common);
   command->footer(
       "Example: elastocal validate project.yaml --calibration out "

@@ -143,6 +143,7 @@ std::vector<Bound> MakeBounds() {
       {"design.limit_margin", "", 0, 0.4, "beyond, nearly nothing of the range is left"},
       {"design.effort_share", "", 0, 1, "a share"},
       {"design.motion_effort_share", "", 0.01, 1, "a share"},
+      {"design.dexterity_share", "", 0, 1, "a share of what the posture of rest has"},
       {"design.chains[].cone_deg", "deg", 0.1, 180, "half a turn"},
       {"design.chains[].floor_mm", "mm", -1e4, 1e4, kBody},
       {"design.chains[].box_mm.lower[]", "mm", -1e5, 1e5, kRoom},

@@ -13,6 +13,7 @@
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/observation/contact_result.hpp"
 #include "elastocal/observation/observed_study.hpp"
+#include "elastocal/pipeline/known_places.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 
 namespace elastocal {
@@ -102,14 +103,16 @@ CauseReport StudyObservedCauses(const Project& project, const ObservedRobot& mod
 }
 
 CauseReport StudyCauses(const Project& given, const Measurements& measured,
-                        std::optional<std::uint64_t> seed) {
+                        std::optional<std::uint64_t> seed,
+                        const std::vector<MarkerMeasurement>& places) {
   Project project = given;
   if (!KnowsRobot(project.calibration.earlier)) project.elasticity.extra.clear();
   Measurements own = measured;
   const RecordedModel robot = MakeRecordedModel(project, seed, own, KnockSearch::kNone);
   const Recording& recording = own.calibration;
-  const CalibrationResult result = Calibrate(robot.model, recording, robot.base,
-                                             ModelKinds(robot.model).back(), project.calibration);
+  std::vector<std::string> said_by_calibrate;
+  const CalibrationResult result =
+      CalibrateWithPlaces(places, robot, recording, project.calibration, said_by_calibrate);
   project.elasticity.hours = MeanHours(recording);
   project.elasticity.extra = PossibleCauses(project, recording);
   const ErrorModel wide =

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "elastocal/calibration/cause_search.hpp"
+#include "elastocal/calibration/marker_places.hpp"
 #include "elastocal/observation/observation_fit.hpp"
 #include "elastocal/pipeline/cause_pictures.hpp"
 #include "elastocal/recorded/measurements.hpp"
@@ -28,10 +29,11 @@ struct CauseReport {
 };
 
 /// Calibrates without extra causes (those of `given` are ignored, but for those of an earlier
-/// calibration that is the prior), then tests each and searches the best set. Throws what Calibrate
-/// throws.
+/// calibration that is the prior), then tests each and searches the best set. `places`: of markers,
+/// as measured; those that contradict the recording are left out. Throws what Calibrate throws.
 CauseReport StudyCauses(const Project& given, const Measurements& measured,
-                        std::optional<std::uint64_t> seed);
+                        std::optional<std::uint64_t> seed,
+                        const std::vector<MarkerMeasurement>& places = {});
 
 /// The same of tables of observations, beside what `model` has: `fit` is that of `model`.
 CauseReport StudyObservedCauses(const Project& project, const ObservedRobot& model,

@@ -13,6 +13,7 @@
 #include "elastocal/pipeline/cause_picture_json.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
+#include "elastocal/pipeline/known_places.hpp"
 #include "elastocal/recorded/choose_elasticity.hpp"
 
 namespace elastocal {
@@ -195,7 +196,10 @@ Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
     } else {
       StartFromEarlier(told.prior, told.days, measured, seed, project);
     }
-    diagnosis.report = StudyCauses(project, measured, seed);
+    std::vector<std::string> said_by_calibrate;
+    const std::vector<MarkerMeasurement> places =
+        OpenMarkerPlaces(told.marker_places, project, measured.calibration, {}, said_by_calibrate);
+    diagnosis.report = StudyCauses(project, measured, seed, places);
     diagnosis.recording = measured.calibration.source;
   }
   diagnosis.calibration_fingerprint = robot.calibration.fingerprint;

@@ -12,6 +12,7 @@
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
+#include "elastocal/pipeline/known_places.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/validation/deployment.hpp"
 
@@ -57,6 +58,20 @@ double ErrorOn(const Recording& recording, const RecordedModel& robot, const Pro
   return RefitTo(robot.model, recording, robot.base, project.calibration,
                  run.calibration.joint_errors)
       .metrics_all.rmse_3d;
+}
+
+/// From now on the markers' places that were measured are known, as they are stated: the joints are
+/// not fitted, so that what contradicts the places may be the calibration.
+void KnowPlaces(const std::filesystem::path& file, const RecordedModel& robot,
+                const Recording& recording, Project& project, ValidationRun& run) {
+  if (file.empty()) return;
+  if (run.frozen) {
+    throw InputError(file.string() +
+                     ": measured places of markers (--marker-places) and --frozen: nothing is "
+                     "fitted beside them");
+  }
+  KnowMarkers(OpenMarkerPlaces(file, project, recording, robot.knocks, run.warnings), robot.model,
+              project.calibration.earlier);
 }
 
 /// What a URDF has a place for: without compliances and corrections, also where its geometry is
@@ -138,6 +153,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
   const RecordedModel robot = MakeRecordedModel(project, options.seed, measured);
   CheckApplies(run.calibration, project, robot.model);
   CheckWaist(run, measured.calibration);
+  KnowPlaces(options.marker_places, robot, measured.calibration, project, run);
   run.transfer = TransferTo(measured.calibration, robot, project, run);
   const std::vector<RecordingMistake> mistakes =
       FindMistakesBy(project, options.seed, as_recorded, ErrorOf(run.transfer),

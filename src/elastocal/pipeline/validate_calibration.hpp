@@ -51,6 +51,9 @@ struct TransferOptions {
   std::optional<std::uint64_t> seed = {};  ///< instead of the project's
   /// Mistakes of the recording to be corrected first, see AcceptMistakes.
   std::vector<std::string> accept = {};
+  /// Where markers are on their links, as measured (ReadMarkerPlaces); empty: nobody knows. Both
+  /// robots are fitted beside them, as they are stated.
+  std::filesystem::path marker_places = {};
 };
 
 /// Applies a stored calibration to another recording of the same robot: only waist and markers are
@@ -59,7 +62,8 @@ struct TransferOptions {
 ///
 /// `calibration`: the folder that calibrate wrote to, or its calibration.yaml. `recording`: a
 /// posture table or a recording folder; trials for validation will do. Throws InputError: files
-/// that cannot be read; a calibration of a robot with other nominal geometry than the project's.
+/// that cannot be read; a calibration of a robot with other nominal geometry than the project's;
+/// places of markers where nothing is fitted.
 ValidationRun ValidateCalibration(const Project& given, const std::filesystem::path& calibration,
                                   const std::filesystem::path& recording,
                                   const TransferOptions& options = {});

@@ -134,6 +134,34 @@ std::string DescribeLeftOut(const Project& project, const PlannedTour& set, cons
                      left.at_rest ? "at rest" : "on every way there");
 }
 
+/// Of joints whose range the project asks for: plainly a part of what postures have by default.
+std::vector<std::string> DescribeBeyondRanges(const Project& project, const JointMotion& motion) {
+  constexpr double kDefaultMargin = 0.02, kPlainly = 0.01;  // of a range
+  constexpr double kTolerance = 1e-6;
+  std::vector<std::string> beyond;
+  for (Eigen::Index c = 0; c < motion.q.cols(); ++c) {
+    const Joint& joint = project.tree.joints[Size(project.tree.coordinate_joint[Size(c)])];
+    const auto [widest_lower, widest_upper] = PostureRange(joint, kDefaultMargin);
+    const double lower = project.motion.lower[c], upper = project.motion.upper[c];
+    const double plainly = kPlainly * (widest_upper - widest_lower);
+    Eigen::Index below = 0, above = 0;
+    const double under = lower - motion.q.col(c).minCoeff(&below);
+    const double over = motion.q.col(c).maxCoeff(&above) - upper;
+    const bool is_low = lower > widest_lower + plainly && under > kTolerance && under >= over;
+    const bool is_high = upper < widest_upper - plainly && over > kTolerance && !is_low;
+    if (!is_low && !is_high) continue;
+    const bool slides = joint.type == JointType::kPrismatic;
+    const double unit = slides ? 1e3 : 180.0 / M_PI;
+    beyond.push_back(fmt::format(
+        "{} leaves the range that the project asks for (design: range_deg, limit_margin) by "
+        "{:.2f} {} at {:.2f} s: postures keep it, and the motion goes on to keep its balance; "
+        "--limit-margin-deg holds for the whole motion",
+        joint.name, unit * (is_low ? under : over), slides ? "mm" : "deg",
+        motion.time_s[is_low ? below : above]));
+  }
+  return beyond;
+}
+
 /// The robot where it moves: between tables, if the project has some.
 std::unique_ptr<StandingRobot> StandForMotion(const Project& project,
                                               const MotionPlanOptions& options) {
@@ -169,6 +197,7 @@ MotionPlan PlanSets(const Project& project, const StandingRobot& robot,
   plan.margins = CheckMotion(robot, motion, &forces);
   plan.limits = LimitUses(project, plan.margins, robot.limits, plan.rate_hz);
   plan.whole = {ToJointMotion(robot, motion), forces.zmp, forces.torques};
+  plan.beyond_ranges = DescribeBeyondRanges(project, plan.whole.motion);
   plan.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
 }

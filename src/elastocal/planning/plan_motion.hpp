@@ -59,6 +59,9 @@ struct MotionPlan {
   std::vector<LimitUse> broken() const;
   /// What each set leaves out and why, a sentence each.
   std::vector<std::string> left_out;
+  /// Joints that leave the range that the project asks for (design.range_deg, limit_margin), a
+  /// sentence each: postures keep it, but the motion has to balance.
+  std::vector<std::string> beyond_ranges;
 };
 
 /// Plans the motion through calibration postures (paper, section 3.6): order, ways that avoid the

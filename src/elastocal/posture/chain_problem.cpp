@@ -11,6 +11,7 @@
 #include "elastocal/math/random.hpp"
 #include "elastocal/math/rrt_connect.hpp"
 #include "elastocal/posture/clearance.hpp"
+#include "elastocal/posture/dexterity.hpp"
 #include "elastocal/posture/torque_limit.hpp"
 #include "elastocal/posture/workspace.hpp"
 
@@ -182,6 +183,10 @@ FeasibleSet MakeFeasibleSet(const RobotTree& tree, const MotionSetup& motion,
   }
   set.constraints.push_back(std::make_unique<TorqueLimit>(
       tree, PathCoordinates(tree, chain.tip_link), motion.effort_share));
+  if (chain.dexterity_share > 0.0 && set.chain.size() >= 6) {
+    set.constraints.push_back(
+        std::make_unique<Dexterity>(set.chain, chain.tip_link, chain.dexterity_share));
+  }
   if (!chain.contacts.empty()) {
     set.constraints.push_back(
         std::make_unique<SphereClearance>(motion.spheres, chain.contacts, motion.sphere_margin));

@@ -76,6 +76,8 @@ ChainSetup ReadChainSetup(const YamlValue& value, const Project& project) {
   return setup;
 }
 
+/// A lifted leg with less is a leg whose foot joints can hardly put where it belongs (Dexterity).
+constexpr double kDexterityShare = 0.5;
 constexpr double kLimitMargin = 0.02;  // share of a range that is left free at either end
 
 /// Where joints may be, with a share of the range left free at either end.
@@ -210,7 +212,7 @@ void CarryRest(Project& project) {
 
 void ReadDesign(const YamlValue& section, Project& project) {
   section.ExpectKeys({"rest_deg", "limit_margin", "range_deg", "effort_share",
-                      "motion_effort_share", "chains", "cameras_mm"});
+                      "motion_effort_share", "dexterity_share", "chains", "cameras_mm"});
   MotionSetup& motion = project.motion;
   double limit_margin = kLimitMargin;
   section.ReadBounded("limit_margin", limit_margin);
@@ -226,9 +228,14 @@ void ReadDesign(const YamlValue& section, Project& project) {
   if (const auto cameras = section.Find("cameras_mm")) {
     for (const YamlValue& camera : cameras->Items()) motion.cameras.push_back(PointFromMm(camera));
   }
+  double dexterity_share = kDexterityShare;
+  section.ReadBounded("dexterity_share", dexterity_share);
   if (const auto chains = section.Find("chains")) {
     for (const YamlValue& value : chains->Items()) {
       ChainSetup setup = ReadChainSetup(value, project);
+      const bool is_leg = std::any_of(project.soles.begin(), project.soles.end(),
+                                      [&](const Sole& s) { return s.link == setup.tip_link; });
+      if (is_leg) setup.dexterity_share = dexterity_share;
       for (const ChainSetup& other : motion.chains) {
         if (other.name == setup.name || other.mirror == setup.name) {
           value.Fail("the chain " + Quote(setup.name) + " comes twice");

@@ -27,6 +27,9 @@ struct ChainSetup {
   std::optional<Box> box;    ///< of the tip link's origin, eq. 10
   double largest_turn = M_PI;        ///< of the tip from its attitude in the posture of rest, rad
   std::vector<SpherePair> contacts;  ///< spheres that can touch, eq. 11
+  /// The tip stays so far from singular postures: the least singular value of its Jacobian is at
+  /// least this share of what it is in the posture of rest; 0: anywhere.
+  double dexterity_share = 0.0;
   /// Height of the floor, which the chain's own spheres stay above, in the root link's frame, m.
   std::optional<double> floor_z;
 };

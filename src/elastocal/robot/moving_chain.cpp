@@ -95,6 +95,32 @@ Eigen::Matrix3Xd MovingChain::RotationJacobian(int link) const {
   return J;
 }
 
+Eigen::RowVectorXd MovingChain::JacobianGradient(int link, const Eigen::VectorXd& u,
+                                                 const Eigen::VectorXd& v) const {
+  const Vector3d end = T_root_link_[link].translation();
+  const auto turns = [&](const Driven& d) {
+    return tree_.joints[d.joint].type == JointType::kRevolute;
+  };
+  const auto slide = [&](const Driven& d) -> Vector3d {
+    return turns(d) ? Axis(d.joint).cross(end - Origin(d.joint)) : Axis(d.joint);
+  };
+  Eigen::RowVectorXd gradient = Eigen::RowVectorXd::Zero(size());
+  for (const Driven& moved : driven_[tree_.links[link].body]) {  // its column of J ...
+    for (const Driven& by : driven_[tree_.links[link].body]) {   // ... when this one moves
+      // The inner one of the two turns what the outer one does.
+      const bool carried = carries_[by.joint][moved.joint] != 0;
+      const Driven& inner = carried ? by : moved;
+      if (!turns(inner)) continue;
+      double change = u.head<3>().dot(Axis(inner.joint).cross(slide(carried ? moved : by)));
+      if (carried && turns(moved)) {
+        change += u.tail<3>().dot(Axis(by.joint).cross(Axis(moved.joint)));
+      }
+      gradient[by.variable] += by.multiplier * moved.multiplier * v[moved.variable] * change;
+    }
+  }
+  return gradient;
+}
+
 /// Derivative of the first moment of all masses by a joint, kg.m/rad or kg.
 Vector3d MovingChain::MomentGradient(int joint) const {
   const CarriedLoad& load = carried_[joint];

@@ -45,6 +45,11 @@ class MovingChain {
   /// Derivatives by x of a link's rotation, as rotation vectors, 3 x size().
   Eigen::Matrix3Xd RotationJacobian(int link) const;
 
+  /// Derivatives by x of u^T J v, where J is the displacement of a link's origin by x above its
+  /// rotation, for constant u (6) and v (size()).
+  Eigen::RowVectorXd JacobianGradient(int link, const Eigen::VectorXd& u,
+                                      const Eigen::VectorXd& v) const;
+
   /// Torque that the motor of a coordinate of q supplies to balance gravity while the root link is
   /// held, N.m or N, and its derivatives by x (eq. 9).
   double GravityTorque(int coordinate) const;

@@ -262,7 +262,9 @@ class CHeaderWriter {
     array("double", "highest", robot_.coordinates);
     array("double", "most_change", robot_.coordinates);
     array("double", "last_q", robot_.coordinates);
-    array("double", "last_command", robot_.coordinates);
+    for (const char* name : {"last_command", "given", "pace"}) {
+      array("double", name, robot_.coordinates);
+    }
     array("ec_pose", "last_target", robot_.tips);
     array("unsigned", "stopped", robot_.coordinates);
     array("double", "shift", robot_.joints);
@@ -279,7 +281,8 @@ class CHeaderWriter {
           "step",        "held",    "loosed",       "search",      "column",      "good_q",
           "good_torque", "work_q",  "best_q",       "kept_q",      "start_q",     "lowest",
           "highest",     "last_q",  "last_command", "most_change", "last_target", "stopped",
-          "shift",       "side",    "from",         "centre",      "share"}) {
+          "shift",       "side",    "from",         "centre",      "share",       "given",
+          "pace"}) {
       out_ << "  m->" << name << " = s->" << name << ";\n";
     }
     out_ << "  ec_reset(&" << name_ << "_robot, m);\n}\n\n";
@@ -287,6 +290,10 @@ class CHeaderWriter {
             "static inline void "
          << name_ << "_limit_changes(" << name_ << "_state* s, const double* most) {\n"
          << "  ec_limit_changes(&" << name_ << "_robot, most, &s->memory);\n}\n\n";
+    out_ << "/* Corrections start and end gently, see ec_ease_changes above. */\n"
+            "static inline void "
+         << name_ << "_ease_changes(" << name_ << "_state* s, double calls) {\n"
+         << "  ec_ease_changes(calls, &s->memory);\n}\n\n";
     out_ << "/* Forgets the last command, see ec_forget above. */\nstatic inline void " << name_
          << "_forget(" << name_ << "_state* s) { ec_forget(&s->memory); }\n\n";
   }

@@ -127,6 +127,8 @@ void Compensator::Allocate() {
                                               {&memory_.most_change, coordinates},
                                               {&memory_.last_q, coordinates},
                                               {&memory_.last_command, coordinates},
+                                              {&memory_.given, coordinates},
+                                              {&memory_.pace, coordinates},
                                               {&memory_.shift, joints},
                                               {&memory_.side, 2 * robot_.shifts},
                                               {&memory_.from, 2 * robot_.shifts},
@@ -200,6 +202,8 @@ CompensatorStatus Compensator::Command(const Eigen::Isometry3d* T_root_tip, cons
 void Compensator::LimitChanges(const Vector& most) noexcept {
   ec_limit_changes(&robot_, most.size() == robot_.coordinates ? most.data() : nullptr, &memory_);
 }
+
+void Compensator::EaseChanges(double calls) noexcept { ec_ease_changes(calls, &memory_); }
 
 void Compensator::Forget() noexcept { ec_forget(&memory_); }
 

@@ -73,6 +73,15 @@ class Compensator {
   /// entry that is negative or not a number is no limit, and an empty vector has none.
   void LimitChanges(const Eigen::Ref<const Eigen::VectorXd>& most) noexcept;
 
+  /// From now on the corrections of calls along a motion start and end gently. From rest to the
+  /// largest speed beside the plan, a tenth of what LimitChanges says (a joint without such a limit
+  /// has none here), takes so many calls, and so does braking. So the acceleration of a command
+  /// beside the plan is bounded, and near a stretched limb, where the best command starts and stops
+  /// within one call, more is left for some calls. Limits of joints and of their speed are kept
+  /// first. 0: the best command is given as it is. A call that stands by itself, and one with other
+  /// feet, goes there at once.
+  void EaseChanges(double calls) noexcept;
+
   /// Forward kinematics with deflection (eq. 3, 5, 6): fills link_pose() and root_pose().
   CompensatorStatus Forward(const Eigen::Ref<const Eigen::VectorXd>& q,
                             const Eigen::Ref<const Eigen::VectorXd>& torque,

@@ -59,6 +59,14 @@ static inline void ec_limit_changes(const ec_robot* robot, const double* most, e
   }
 }
 
+/* From now on corrections of calls along a motion start and end gently: from rest to the largest
+   speed beside the plan, a tenth of the joint's (ec_limit_changes; where that has no limit, the
+   joint has none here), takes so many calls, and so does braking. 0, less or not finite: one call.
+   */
+static inline void ec_ease_changes(double calls, ec_memory* memory) {
+  memory->calls_to_pace = calls > 0.0 && ec_is_sane(calls) ? calls : 0.0;
+}
+
 /* Forgets all input. To be called once before anything else. Until a good position comes, the
    robot is taken to be at position 0 of all coordinates, within their limits. */
 static inline void ec_reset(const ec_robot* robot, ec_memory* memory) {
@@ -72,7 +80,9 @@ static inline void ec_reset(const ec_robot* robot, ec_memory* memory) {
   for (c = 0; c < robot->coordinates; ++c) {
     memory->stopped[c] = EC_FINE;
     memory->most_change[c] = HUGE_VAL;
+    memory->pace[c] = 0.0;
   }
+  memory->calls_to_pace = 0.0;
   for (k = 0; k < robot->branches; ++k) memory->search[k].left = 0.0;
   for (k = 0; k < 2 * robot->shifts; ++k) {
     memory->side[k] = 0.0;

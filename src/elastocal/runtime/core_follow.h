@@ -4,7 +4,7 @@
 #ifndef ELASTOCAL_CORE_FOLLOW_H
 #define ELASTOCAL_CORE_FOLLOW_H
 
-#include "elastocal/runtime/core_reach.h"
+#include "elastocal/runtime/core_ease.h"
 
 /* The last command counts while no joint of the plan is further than this from then, rad or m. */
 #define EC_NEARBY 0.1
@@ -14,9 +14,6 @@
 #define EC_FOLLOW 1.0
 #define EC_CREEP 2e-4
 #define EC_SLIDE 0.1
-/* Beside the plan a joint moves by at most this share of its largest change, where that is known: a
-   trunk that leans at full speed for an arm that is too short for a moment throws a robot over. */
-#define EC_GENTLE 0.1
 
 /* How far the plan is from that of the last command: the largest change of a joint, or of a target
    where `moves` says that these are not the plan's. Negative: they have nothing to do with each
@@ -39,13 +36,18 @@ static inline double ec_change(const ec_robot* robot, const double* nominal, int
   return change <= EC_NEARBY ? change : -1.0;
 }
 
+/* Whether the last command was of the same feet, and its loads from the same source. */
+static inline int ec_is_same(const double* torque, unsigned support, const ec_memory* memory) {
+  return support == memory->last_support && (torque ? 1 : 0) == memory->had_torque;
+}
+
 /* Where to start: the nominal positions with the last correction. And how far the command may go:
    it may stay where it was as well as go along with the plan, and a little further to both sides;
    as far as ever where other feet stand than then, or loads come from elsewhere, because the
    corrections then jump. In no case faster than a joint may move, but for a plan that does. */
 static inline void ec_stay_near(const ec_robot* robot, const double* nominal, const double* torque,
                                 unsigned support, double change, ec_memory* memory) {
-  const int same = support == memory->last_support && (torque ? 1 : 0) == memory->had_torque;
+  const int same = ec_is_same(torque, support, memory);
   const double room = same ? EC_FOLLOW * change + EC_CREEP : 2.0 * robot->largest_correction;
   int c, k;
   for (c = 0; c < robot->coordinates; ++c) memory->lowest[c] = room;
@@ -128,14 +130,13 @@ static inline void ec_reach(const ec_robot* robot, const double* nominal, const 
       }
     }
   }
+  for (t = 0; t < robot->branches; ++t) memory->search[t].last_left = memory->search[t].left;
+  ec_ease(robot, nominal, torque, support,
+          change < 0.0 || !ec_is_same(torque, support, memory), memory, command, &at_end);
   *status |= at_end | ec_in_the_way(robot, nominal, command, memory);
   ec_residual(robot, memory, residual);
-  for (c = 0; c < robot->coordinates; ++c) {
-    memory->last_q[c] = nominal[c];
-    memory->last_command[c] = command[c];
-  }
+  for (c = 0; c < robot->coordinates; ++c) memory->last_q[c] = nominal[c];
   for (t = 0; t < robot->tips; ++t) memory->last_target[t] = memory->target[t];
-  for (t = 0; t < robot->branches; ++t) memory->search[t].last_left = memory->search[t].left;
   memory->last_support = support;
   memory->had_torque = torque ? 1 : 0;
   memory->has_last = 1;

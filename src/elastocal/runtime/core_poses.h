@@ -138,8 +138,12 @@ typedef struct {
   double* lowest;       /* ... and how low and ... */
   double* highest;      /* ... how high a command may be, while `is_bound` */
   double* most_change;  /* coordinates: limits of a command's change, or infinite */
+  double calls_to_pace; /* a correction changes its pace by that beside a plan in so many calls; 0:
+                           at once */
   double* last_q;       /* coordinates: nominal positions of the last command ... */
-  double* last_command; /* ... and that */
+  double* last_command; /* ... the best one, which the search found ... */
+  double* given;        /* ... the one that follows it gently ... */
+  double* pace;         /* ... and by how much its correction changed */
   ec_pose* last_target; /* tips: what it was for */
   unsigned* stopped;    /* coordinates: EC_JOINT_LIMIT or EC_CORRECTION_CUT where that limit keeps
                            the end of a limb from where it should be, or EC_FINE */
