@@ -28,6 +28,7 @@ struct CompensateOptions {
   std::string calibration, project, motion, output;
   std::string as = "compensated", loads = "statics";
   double most_left_mm = 1e3 * CompensateMotionOptions{}.most_left_m;
+  double ease_s = 0.0;
 };
 
 /// By limb, where any that does not yield has more left than nothing.
@@ -99,7 +100,8 @@ int Compensate(const CompensateOptions& options) {
   const CompensatedMotion result = CompensateMotion(
       robot.project, model, planned,
       {.loads = options.loads == "planned" ? MotionLoads::kPlanned : MotionLoads::kStatics,
-       .most_left_m = 1e-3 * options.most_left_mm});
+       .most_left_m = 1e-3 * options.most_left_mm,
+       .ease_s = options.ease_s});
   const bool fine = result.broken.empty();
   if (fine) outputs.Set(options.output, FormatMotionTable(robot.project.tree, result.planned));
   outputs.Set(options.common.json_file, MakeCompensationJson(result));
@@ -150,6 +152,13 @@ void AddCompensate(CLI::App& app, Action& action) {
                    "Refuse a motion where limits leave more at the end of a limb of six joints or "
                    "more; a degree counts 5.2 mm")
       ->check(InBounds("compensate --most-left-mm"))
+      ->capture_default_str();
+  command
+      ->add_option("--ease-s", options->ease_s,
+                   "Time in which a correction comes to its largest speed, and brakes: near "
+                   "stretched limbs the best one starts within a sample. More is left meanwhile "
+                   "(try 0.03); 0: none")
+      ->check(InBounds("compensate --ease-s"))
       ->capture_default_str();
   AddOutputOptions(*command, options->common);
   command->footer(

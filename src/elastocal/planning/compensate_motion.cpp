@@ -103,11 +103,6 @@ void CheckLimits(const Project& project, CompensatedMotion& result) {
   }
 }
 
-/// A correction comes to the largest speed that it has beside the plan, a tenth of the joint's, in
-/// this time: a joint accelerates beside the plan as if it came to its speed in 0.3 s, the time in
-/// which a humanoid falls. docs/accuracy.md has what others leave.
-constexpr double kTimeToPace_s = 0.03;
-
 /// By coordinate: what no command exceeds, with room for the rounding of its file.
 Eigen::VectorXd Speeds(const RobotTree& tree) {
   constexpr double kShare = 1.0 - 1e-6;
@@ -354,7 +349,7 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
     if (i > 0 && planned.time_s.size() > 0) {
       const double step = planned.time_s[i] - planned.time_s[i - 1];
       compensator.LimitChanges(step * speeds);
-      compensator.EaseChanges(kTimeToPace_s / step);
+      compensator.EaseChanges(options.ease_s / step);
     }
     status |= compensator.Command(nominal, torque, feet);
     stopped.Look(compensator, TimeAt(planned, i));

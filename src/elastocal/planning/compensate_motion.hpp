@@ -68,6 +68,9 @@ struct CompensateMotionOptions {
   MotionLoads loads = MotionLoads::kStatics;
   /// A motion is refused where more is left at the end of a limb that does not yield (LeftAtLimb).
   double most_left_m = 5e-3;
+  /// A correction comes to the largest speed that it has beside the plan, a tenth of the joint's,
+  /// in this time, s, and brakes in it (Compensator::EaseChanges); 0: as suddenly as the best one.
+  double ease_s = 0.0;
 };
 
 /// Names of the coordinates of which the motion says nothing.
