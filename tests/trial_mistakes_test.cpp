@@ -151,29 +151,6 @@ TEST_F(TrialMistakes, LabelsExchangedInOneOfTwoTrialsAreNamedAndContradictHeldOu
       << found[0];
 }
 
-// The trial of the estimate alone cannot show it.
-TEST_F(TrialMistakes, AClusterKnockedBeforeTheHeldOutTrialIsNamed) {
-  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
-  const BaseParameters base = FindBaseParameters(model, project_.identifiability);
-  Eigen::VectorXd truth = DrawErrors(model, base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
-  const Recording recording = AsTrial(model, truth, "swing", TrialKind::kCalibration, 1);
-  const MarkerCluster& cluster = project_.clusters.back();
-  for (const int m : cluster.markers) {
-    const int x = FindParameter(model.parameters, "marker." + project_.markers[m].name + ".x");
-    truth.segment<3>(x) += Eigen::Vector3d(3e-3, 0.0, -4e-3);
-  }
-  const Recording held_out = AsTrial(model, truth, "check", TrialKind::kRandom, 2);
-  const ModelComparison comparison = CompareModels(
-      Calibrate(model, recording, base, ModelKind::kGeometric, {}), model, recording, base, {});
-  const HeldOut judged = JudgeOnTrials(comparison, held_out, {});
-  const std::vector<std::string> found =
-      FindContradictions(project_, {model, base}, recording, held_out, comparison, judged.table);
-  ASSERT_EQ(found.size(), 1u);
-  EXPECT_NE(found[0].find("cluster TOOL lies 5.0 mm elsewhere from trial check, posture 1 on"),
-            std::string::npos)
-      << found[0];
-}
-
 // Markers that a knock made two are unknown to the project.
 TEST_F(TrialMistakes, AFaultBesideAKnockIsNamedByTheHeldOutTrial) {
   RecordedModel robot{MakeErrorModel(project_.tree, project_.markers, project_.placement), {}};

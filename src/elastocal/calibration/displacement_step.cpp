@@ -81,6 +81,7 @@ double Freedom(const BodyResiduals& body, const Selection& selection, int postur
 
 std::vector<int> ChangesOfFeet(const Recording& recording) {
   std::vector<int> changes;
+  if (recording.trials.empty()) return changes;
   const auto support = [&](int i) -> const std::vector<int>& {
     return recording.trials[recording.trial[i]].support;
   };

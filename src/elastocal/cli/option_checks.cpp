@@ -24,8 +24,8 @@ CLI::Validator NumberFromTo(double least, double most, const char* kind, bool wh
   const std::string range = fmt::format("from {:.10g} to {:.10g}", least, most);
   const auto check = [=](std::string& text) {
     const std::optional<double> number = ParseNumber(text);
-    const bool fits =
-        number && *number >= least && *number <= most && (!whole || *number == std::floor(*number));
+    const bool written_whole = text.find_first_not_of("+-0123456789") == std::string::npos;
+    const bool fits = number && *number >= least && *number <= most && (!whole || written_whole);
     return fits ? "" : FoundInstead(text, std::string(kind) + " " + range);
   };
   return {check, range};

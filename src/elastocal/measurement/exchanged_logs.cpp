@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kPoorPeak = 0.98;       // of a log that may be that of another trial
 constexpr double kLackWithRight = 0.25;  // of what a correlation lacks to one is left
+constexpr int kMostUntold =
+    4;  // trials: of more, the cause is another one, and each try reads files
 
 bool ClockIsUntold(const TrialSummary& summary) {
   return !summary.refused.empty() && summary.clock.state != ClockState::kReliable;
@@ -43,6 +45,10 @@ void RefuseAs(const std::string& reason, TrialSamples& samples) {
 }  // namespace
 
 void RefuseExchangedLogs(const SampleWithLog& sample, std::vector<TrialSamples>& samples) {
+  const auto untold = std::count_if(samples.begin(), samples.end(), [](const TrialSamples& one) {
+    return ClockIsUntold(one.summary);
+  });
+  if (untold > kMostUntold) return;
   std::vector<char> explained(samples.size(), 0);
   for (std::size_t a = 0; a < samples.size(); ++a) {
     if (!ClockIsUntold(samples[a].summary)) continue;
@@ -50,7 +56,7 @@ void RefuseExchangedLogs(const SampleWithLog& sample, std::vector<TrialSamples>&
       const TrialSummary& other = samples[b].summary;
       const bool poor =
           ClockIsUntold(other) || (other.refused.empty() && other.clock.peak < kPoorPeak);
-      if (a == b || explained[b] != 0 || !poor) continue;
+      if (a == b || explained[b] != 0 || !poor || (ClockIsUntold(other) && b < a)) continue;
       if (!FitsBetter(sample, samples[a].summary, a, b) || !FitsBetter(sample, other, b, a)) {
         continue;
       }

@@ -66,5 +66,21 @@ TEST(ExchangedLogs, TwoTrialsWithEachOthersLogSaySo) {
   EXPECT_EQ(samples[0].summary.refused, "no clock");
 }
 
+// Each try reads files and looks for a clock.
+TEST(ExchangedLogs, AreNotLookedForWhereMostClocksCannotBeTold) {
+  std::vector<TrialSamples> samples;
+  for (int k = 0; k < 5; ++k) samples.push_back(WithClock("t", ClockState::kWeak, 0.3));
+  int tries = 0;
+  const SampleWithLog count = [&](std::size_t, std::size_t) {
+    ++tries;
+    return WithClock("", ClockState::kWeak, 0.3);
+  };
+  RefuseExchangedLogs(count, samples);
+  EXPECT_EQ(tries, 0);
+  samples.pop_back();
+  RefuseExchangedLogs(count, samples);
+  EXPECT_EQ(tries, 6);  // of each pair, the first that fails
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -109,7 +109,9 @@ class OrderSearch {
     }
     if (equal.empty()) return copies;
     shown_ = PositionsByMarkers(model_, trial_);
+    std::sort(equal.begin(), equal.end());
     for (const auto& [copy, original] : equal) {
+      if (!copies.empty() && copies.back().first == copy) continue;  // of one original
       const double off = VaryingOff(copy);
       if (off > kOffItsColumn && VaryingOff(original) < kLeftInOrder * off) {
         copies.emplace_back(copy, original);
@@ -247,23 +249,30 @@ std::vector<TriedCorrection> FindColumnOrders(const ErrorModel& nominal,
   const auto name_of = [&](int c) {
     return tree.joints[Size(tree.coordinate_joint[Size(c)])].name;
   };
+  struct Copied {
+    Recording told;  ///< the copy where the markers show it
+    std::string trials;
+  };
+  std::map<std::pair<int, int>, Copied> copied;  // by copy and original
   for (int trial = 0; trial < static_cast<int>(recording.trials.size()); ++trial) {
     const std::vector<int> postures = PosturesOfTrial(recording, trial);
     if (static_cast<int>(postures.size()) < kFewestInOrder) continue;
     OrderSearch search(nominal, SelectPostures(recording, postures));
-    for (const auto& [copy, original] : search.Copies()) {
-      Recording told = recording;
-      told.q(postures, copy) = search.shown().col(copy);
-      found.push_back(
-          {"",
-           fmt::format("{}: its column is a copy of that of {}, number for number, in "
-                       "trial {}, and the markers show it to move otherwise",
-                       name_of(copy), name_of(original), recording.trials[Size(trial)].name),
-           std::move(told)});
+    for (const auto& pair : search.Copies()) {
+      Copied& one = copied.try_emplace(pair, Copied{recording, ""}).first->second;
+      one.told.q(postures, pair.first) = search.shown().col(pair.first);
+      one.trials += (one.trials.empty() ? "" : ", ") + recording.trials[Size(trial)].name;
     }
     if (FurthestMarker(model, geometry, recording, postures) < far) continue;
     const std::vector<int> order = search.Run();
     if (!order.empty()) trials_of[order].push_back(trial);
+  }
+  for (auto& [pair, one] : copied) {
+    found.push_back({"",
+                     fmt::format("{}: its column is a copy of that of {}, number for number, in "
+                                 "trial {}, and the markers show it to move otherwise",
+                                 name_of(pair.first), name_of(pair.second), one.trials),
+                     std::move(one.told)});
   }
   for (const auto& [order, trials] : trials_of) {
     Recording ordered = recording;

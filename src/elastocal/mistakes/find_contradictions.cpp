@@ -198,18 +198,18 @@ bool MayBeInertia(const RecordingFault& fault, const Recording& recording) {
          recording.trials[Size(fault.trial)].of_motion() && std::abs(fault.size) < kMostByInertia;
 }
 
-/// A cluster that was knocked between trials or within one, as all of them together tell; empty:
-/// none. The trials of the estimate need not: where each shows other limbs, a waist that was
-/// knocked between them moves all that they show.
+/// A cluster that was knocked between trials or within one, as all of them together tell, the
+/// held-out ones last; empty: none. The trials of the estimate need not: where each shows other
+/// limbs, a waist that was knocked between them moves all that they show.
 std::string KnockOfAll(const Project& project, const RecordedModel& robot, const Recording& all) {
   const std::vector<Knock> knocks =
       FindKnocks(robot.model, all, robot.base, SeenClusters(project, all), project.calibration);
   if (knocks.empty()) return "";
   const Knock& knock = knocks.front();
   return fmt::format(
-      "trials for calibration and for validation contradict each other: cluster {} lies {:.1f} mm "
-      "elsewhere from {} on, against {} and before: it was knocked. Measure again what was "
-      "recorded before or after it",
+      "trials for calibration and for validation contradict each other: cluster {} seems to lie "
+      "{:.1f} mm elsewhere from {} on than up to {} (trials for validation come last): was it "
+      "knocked, or glued on again? Measure again what was recorded before or after it",
       knock.cluster, 1e3 * knock.distance, DescribePosture(all, knock.posture),
       DescribePosture(all, knock.last_before));
 }
@@ -298,9 +298,9 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
             ExplainFault(general, project).text +
             OrInThoseOfTheEstimate(faults.front(), all, recording)};
   }
+  if (!(std::max(contrast.ratio(), contrast.largest_of_clusters) > kContradicted)) return {};
   const std::string knock = KnockOfAll(project, robot, all);
   if (!knock.empty()) return {knock};
-  if (!(std::max(contrast.ratio(), contrast.largest_of_clusters) > kContradicted)) return {};
   const std::string moved = FindMovedBetween(
       project, together, all, roughly,
       MovedSuspects(SeenClusters(project, recording), FittedTable(project, recording, comparison),

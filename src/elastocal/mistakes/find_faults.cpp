@@ -343,8 +343,7 @@ class FaultsInTurn {
     }
     if (!found_->of_one_trial || !few_->complete) return {few_->text};
     return {few_->text +
-            "; or by the opposite in the other trials that show it: which of them is wrong, the "
-            "recording may not tell"};
+            "; it may as well be off by the opposite in all other trials that show it"};
   }
 
   std::vector<std::string> OfFewRowsOrMarkers() const {

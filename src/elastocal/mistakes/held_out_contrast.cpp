@@ -106,7 +106,7 @@ std::vector<MovedSuspect> MovedSuspects(const std::vector<LabelCluster>& cluster
                  kBestExpected * RmseOfMarkers(fitted, cluster.markers, ModelKind::kUncalibrated));
     if (!(known > 0.0)) continue;
     double worst = 0.0;
-    MovedSuspect suspect{cluster, all.posture_count(), 0};
+    MovedSuspect suspect{cluster, std::vector<char>(Size(all.posture_count()), 0)};
     for (const TrialErrors& trial : held_out.trials) {
       ErrorTable alone;
       alone.trials = {trial};
@@ -114,12 +114,10 @@ std::vector<MovedSuspect> MovedSuspects(const std::vector<LabelCluster>& cluster
       if (!(ratio > kSuspicious)) continue;
       worst = std::max(worst, ratio);
       for (int i = 0; i < all.posture_count(); ++i) {
-        if (all.trials[Size(all.trial[Size(i)])].name != trial.trial) continue;
-        suspect.begin = std::min(suspect.begin, i);
-        suspect.end = std::max(suspect.end, i + 1);
+        if (all.trials[Size(all.trial[Size(i)])].name == trial.trial) suspect.there[Size(i)] = 1;
       }
     }
-    if (suspect.begin < suspect.end) suspects.emplace_back(worst, suspect);
+    if (worst > 0.0) suspects.emplace_back(worst, suspect);
   }
   std::stable_sort(suspects.begin(), suspects.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });

@@ -27,9 +27,10 @@ Eigen::Vector3d PlaceOf(const CalibrationResult& result, int marker) {
          result.delta.segment<3>(first + 3 * marker);
 }
 
-bool SeenIn(const Recording& recording, int marker, int begin, int end) {
-  for (int i = begin; i < end; ++i) {
-    if (Seen(recording, i, marker)) return true;
+/// Whether a marker is seen in any of these postures, or any other one.
+bool IsSeen(const Recording& recording, int marker, const std::vector<char>& postures, bool other) {
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    if ((postures[Size(i)] == 0) == other && Seen(recording, i, marker)) return true;
   }
   return false;
 }
@@ -47,9 +48,7 @@ Moved TakeAsTwo(const Project& project, const CalibrationResult& together, const
   Recording split = all;
   std::vector<int> markers = suspect.cluster.markers;
   std::erase_if(markers, [&](int m) {
-    const bool beside =
-        SeenIn(all, m, 0, suspect.begin) || SeenIn(all, m, suspect.end, all.posture_count());
-    return !beside || !SeenIn(all, m, suspect.begin, suspect.end);
+    return !IsSeen(all, m, suspect.there, false) || !IsSeen(all, m, suspect.there, true);
   });
   Moved moved;
   if (markers.empty()) {
@@ -67,11 +66,13 @@ Moved TakeAsTwo(const Project& project, const CalibrationResult& together, const
   }
   split.markers.conservativeResize(Eigen::NoChange, split.markers.cols() + 3 * count);
   split.markers.rightCols(3 * count).setConstant(kNaN);
-  const int rows = suspect.end - suspect.begin;
-  for (std::size_t k = 0; k < markers.size(); ++k) {
-    auto from = split.markers.block(suspect.begin, 3 * markers[k], rows, 3);
-    split.markers.block(suspect.begin, 3 * (own + static_cast<int>(k)), rows, 3) = from;
-    from.setConstant(kNaN);
+  for (int i = 0; i < all.posture_count(); ++i) {
+    if (suspect.there[Size(i)] == 0) continue;
+    for (std::size_t k = 0; k < markers.size(); ++k) {
+      auto from = split.markers.block<1, 3>(i, 3 * markers[k]);
+      split.markers.block<1, 3>(i, 3 * (own + static_cast<int>(k))) = from;
+      from.setConstant(kNaN);
+    }
   }
   model = SelectMarkers(model, split.marker_names);
   const CalibrationResult fit = Calibrate(
@@ -88,8 +89,8 @@ std::string TrialsOf(const Recording& all, const MovedSuspect& suspect) {
   std::string names;
   for (int trial = 0; trial < static_cast<int>(all.trials.size()); ++trial) {
     bool shows = false;
-    for (int i = suspect.begin; i < suspect.end && !shows; ++i) {
-      shows = all.trial[Size(i)] == trial &&
+    for (int i = 0; i < all.posture_count() && !shows; ++i) {
+      shows = all.trial[Size(i)] == trial && suspect.there[Size(i)] != 0 &&
               std::any_of(suspect.cluster.markers.begin(), suspect.cluster.markers.end(),
                           [&](int m) { return Seen(all, i, m); });
     }
@@ -110,18 +111,20 @@ std::string DescribeMoved(const Recording& all, const MovedSuspect& suspect, con
   const std::string what =
       alone ? fmt::format(
                   "marker {} seems to be elsewhere on its link in trial {} than in the "
-                  "others, by {:.3g} mm ({})",
+                  "others that show it, by {:.3g} mm ({})",
                   moved.names[Size(largest - moved.distances.begin())], trials, 1e3 * *largest,
-                  *largest > kLabelDistance ? "the label of another marker there, or here?"
-                                            : "glued on again?")
+                  *largest > kLabelDistance
+                      ? "does it have the label of another marker in some of them?"
+                      : "glued on again?")
             : fmt::format(
                   "cluster {}: its markers seem to be elsewhere on their link in trial {} "
-                  "than in the others, by {:.3g} mm (knocked, or glued on again, between "
+                  "than in the others that show it, by {:.3g} mm (knocked, or glued on again, "
+                  "between "
                   "them?)",
                   suspect.cluster.name, trials, 1e3 * *largest);
   return fmt::format(
-      "{}; taken as another one there, the error of the fit to all trials falls from "
-      "{:.3g} to {:.3g} mm",
+      "{}; with places of their own for these trials, the error of the fit to all trials falls "
+      "from {:.3g} to {:.3g} mm",
       what, 1e3 * before, 1e3 * moved.left);
 }
 

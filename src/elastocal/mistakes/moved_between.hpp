@@ -13,7 +13,7 @@ namespace elastocal {
 /// A cluster that may be elsewhere on its link in some trials.
 struct MovedSuspect {
   LabelCluster cluster;
-  int begin = 0, end = 0;  ///< postures of these trials, [begin, end)
+  std::vector<char> there;  ///< by posture: whether it is one of these trials
 };
 
 /// The suspect that is elsewhere on its link in its trials, in words; empty where none is. Each is

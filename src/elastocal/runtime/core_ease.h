@@ -115,12 +115,10 @@ static inline int ec_ease(const ec_robot* robot, const double* nominal, const do
                           unsigned support, int at_once, ec_memory* memory, double* command,
                           unsigned* status) {
   int branch, c, eased = 0;
-  if (!memory->has_last) {
-    for (c = 0; c < robot->coordinates; ++c) memory->pace[c] = 0.0;
-  }
   if (at_once || !(memory->calls_to_pace > 0.0)) {
     for (c = 0; c < robot->coordinates; ++c) {
       memory->given[c] = memory->last_command[c] = command[c];
+      memory->pace[c] = 0.0;
     }
     return 0;
   }
