@@ -117,6 +117,22 @@ TEST_F(Quadruped, VisitsPosturesForWhichOneHeightIsLeft) {
   EXPECT_TRUE(plan.broken().empty());
 }
 
+// Postures keep it, and what the standing legs do for the balance is said.
+TEST_F(Quadruped, SaysWhichJointLeavesTheRangeThatIsAskedFor) {
+  EXPECT_TRUE(plan_.beyond_ranges.empty()) << plan_.beyond_ranges[0];
+  const ChainSetup& setup = project_.motion.chains[0];
+  const int standing = project_.motion.chains[1].coordinates[1];
+  const Eigen::VectorXd moved = plan_.whole.motion.q.col(standing);
+  project_.motion.upper[standing] = 0.5 * (project_.motion.rest[standing] + moved.maxCoeff());
+  Eigen::VectorXd q = project_.motion.rest;
+  q(setup.coordinates) += Eigen::Vector3d(0.15, 0.4, -0.8);
+  const MotionPlan plan = PlanMotion(project_, {{setup.name, setup.support, {q}}}, {});
+  ASSERT_EQ(plan.beyond_ranges.size(), 1u);
+  const Joint& joint = project_.tree.joints[Size(project_.tree.coordinate_joint[Size(standing)])];
+  EXPECT_EQ(plan.beyond_ranges[0].rfind(joint.name + " leaves the range", 0), 0u)
+      << plan.beyond_ranges[0];
+}
+
 TEST_F(Quadruped, RobotsWithErrorsStandThrough) {
   for (const MotionTrial& trial : TryMotion(project_, plan_.whole.motion, {.robots = 3})) {
     EXPECT_TRUE(trial.run.stood) << trial.seed;

@@ -34,4 +34,12 @@ bool HasMotion(const Recording& recording) {
   return std::any_of(motion.begin(), motion.end(), [](int of) { return of >= 0; });
 }
 
+std::vector<int> PosturesOfTrial(const Recording& recording, int trial) {
+  std::vector<int> postures;
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    if (recording.trials.empty() || recording.trial[i] == trial) postures.push_back(i);
+  }
+  return postures;
+}
+
 }  // namespace elastocal

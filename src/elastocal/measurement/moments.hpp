@@ -16,4 +16,7 @@ std::vector<int> MotionOfPostures(const Recording& recording);
 /// Whether any posture is a moment of a motion.
 bool HasMotion(const Recording& recording);
 
+/// The postures of a trial, ascending; all of a table of postures, which has no trials.
+std::vector<int> PosturesOfTrial(const Recording& recording, int trial);
+
 }  // namespace elastocal

@@ -15,6 +15,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/math/transform.hpp"
+#include "elastocal/measurement/moments.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/linkage.hpp"
 
@@ -225,14 +226,6 @@ std::string DescribeOrder(const std::vector<int>& order, const RobotTree& tree,
   }
   return "the columns of the joint log are in another order than its header says in trial " +
          trials + ": " + text;
-}
-
-std::vector<int> PosturesOfTrial(const Recording& recording, int trial) {
-  std::vector<int> postures;
-  for (int i = 0; i < recording.posture_count(); ++i) {
-    if (recording.trial[Size(i)] == trial) postures.push_back(i);
-  }
-  return postures;
 }
 
 }  // namespace

@@ -222,8 +222,8 @@ ErrorTable FittedTable(const Project& project, const Recording& recording,
 
 /// Whether held-out trials are suspiciously worse than those of the estimate, and by how much.
 Contrast ContrastOf(const Project& project, const Recording& recording,
-                    const ModelComparison& comparison, const ErrorTable& held_out_table) {
-  const ErrorTable fitted = FittedTable(project, recording, comparison);
+                    const ModelComparison& comparison, const ErrorTable& fitted,
+                    const ErrorTable& held_out_table) {
   return LargestContrast(fitted, held_out_table, SeenClusters(project, recording),
                          comparison.largest_kind());
 }
@@ -233,7 +233,8 @@ Contrast ContrastOf(const Project& project, const Recording& recording,
 std::string LeaveOutBriefExchange(const Project& project, const Recording& recording,
                                   const ModelComparison& comparison,
                                   const ErrorTable& held_out_table, Recording& held_out) {
-  if (!ContrastOf(project, recording, comparison, held_out_table).suspicious()) return "";
+  const ErrorTable fitted = FittedTable(project, recording, comparison);
+  if (!ContrastOf(project, recording, comparison, fitted, held_out_table).suspicious()) return "";
   const std::optional<Exchange> found =
       ExchangeWithinCluster(project, recording, held_out, comparison);
   if (!found || found->of_estimate) return "";
@@ -266,7 +267,8 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
                                             const Recording& recording, const Recording& held_out,
                                             const ModelComparison& comparison,
                                             const ErrorTable& held_out_table) {
-  const Contrast contrast = ContrastOf(project, recording, comparison, held_out_table);
+  const ErrorTable fitted = FittedTable(project, recording, comparison);
+  const Contrast contrast = ContrastOf(project, recording, comparison, fitted, held_out_table);
   if (!contrast.suspicious()) return {};
   const std::string mistake =
       MistakeInHeldOut(project, held_out, robot.knocks, comparison, held_out_table);
@@ -301,10 +303,10 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   if (!(std::max(contrast.ratio(), contrast.largest_of_clusters) > kContradicted)) return {};
   const std::string knock = KnockOfAll(project, robot, all);
   if (!knock.empty()) return {knock};
-  const std::string moved = FindMovedBetween(
-      project, together, all, roughly,
-      MovedSuspects(SeenClusters(project, recording), FittedTable(project, recording, comparison),
-                    held_out_table, comparison.largest_kind(), all));
+  const std::string moved =
+      FindMovedBetween(project, together, all, roughly,
+                       MovedSuspects(SeenClusters(project, recording), fitted, held_out_table,
+                                     comparison.largest_kind(), all));
   if (!moved.empty()) {
     return {"trials for calibration and for validation contradict each other: " + moved};
   }

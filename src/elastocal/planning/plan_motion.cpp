@@ -16,6 +16,7 @@
 #include "elastocal/planning/simulate_experiment.hpp"
 #include "elastocal/planning/stand_at_tables.hpp"
 #include "elastocal/planning/touch_motion.hpp"
+#include "elastocal/robot/motion_setup.hpp"
 
 namespace elastocal {
 namespace {
@@ -136,12 +137,12 @@ std::string DescribeLeftOut(const Project& project, const PlannedTour& set, cons
 
 /// Of joints whose range the project asks for: plainly a part of what postures have by default.
 std::vector<std::string> DescribeBeyondRanges(const Project& project, const JointMotion& motion) {
-  constexpr double kDefaultMargin = 0.02, kPlainly = 0.01;  // of a range
+  constexpr double kPlainly = 0.01;  // of a range
   constexpr double kTolerance = 1e-6;
   std::vector<std::string> beyond;
   for (Eigen::Index c = 0; c < motion.q.cols(); ++c) {
     const Joint& joint = project.tree.joints[Size(project.tree.coordinate_joint[Size(c)])];
-    const auto [widest_lower, widest_upper] = PostureRange(joint, kDefaultMargin);
+    const auto [widest_lower, widest_upper] = PostureRange(joint, kUsualLimitMargin);
     const double lower = project.motion.lower[c], upper = project.motion.upper[c];
     const double plainly = kPlainly * (widest_upper - widest_lower);
     Eigen::Index below = 0, above = 0;

@@ -78,7 +78,6 @@ ChainSetup ReadChainSetup(const YamlValue& value, const Project& project) {
 
 /// A lifted leg with less is a leg whose foot joints can hardly put where it belongs (Dexterity).
 constexpr double kDexterityShare = 0.5;
-constexpr double kLimitMargin = 0.02;  // share of a range that is left free at either end
 
 /// Where joints may be, with a share of the range left free at either end.
 void SetLimits(const RobotTree& tree, double margin, MotionSetup& motion) {
@@ -214,7 +213,7 @@ void ReadDesign(const YamlValue& section, Project& project) {
   section.ExpectKeys({"rest_deg", "limit_margin", "range_deg", "effort_share",
                       "motion_effort_share", "dexterity_share", "chains", "cameras_mm"});
   MotionSetup& motion = project.motion;
-  double limit_margin = kLimitMargin;
+  double limit_margin = kUsualLimitMargin;
   section.ReadBounded("limit_margin", limit_margin);
   SetLimits(project.tree, limit_margin, motion);
   motion.rest = motion.rest.cwiseMax(motion.lower).cwiseMin(motion.upper);
@@ -247,7 +246,7 @@ void ReadDesign(const YamlValue& section, Project& project) {
 }
 
 void SetMotionDefaults(Project& project) {
-  SetLimits(project.tree, kLimitMargin, project.motion);
+  SetLimits(project.tree, kUsualLimitMargin, project.motion);
   project.motion.rest = Eigen::VectorXd::Zero(project.tree.coordinate_count())
                             .cwiseMax(project.motion.lower)
                             .cwiseMin(project.motion.upper);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/math/transform.hpp"
+#include "elastocal/measurement/moments.hpp"
 #include "elastocal/report/encoding.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
@@ -23,14 +24,6 @@ struct Predicted {
   const Recording& recording;
   const ByModel<Prediction>& predictions;
 };
-
-std::vector<int> PosturesOf(const Recording& recording, int trial) {
-  std::vector<int> postures;
-  for (int i = 0; i < recording.posture_count(); ++i) {
-    if (recording.trials.empty() || recording.trial[i] == trial) postures.push_back(i);
-  }
-  return postures;
-}
 
 /// At most `most` of them, evenly.
 std::vector<int> Thinned(const std::vector<int>& postures, int most) {
@@ -136,7 +129,7 @@ void AddScenes(const CalibrationView& view, const Predicted& predicted, Json& sc
   std::vector<Trial> trials = predicted.recording.trials;
   if (trials.empty()) trials.push_back({.name = "", .kind = TrialKind::kCalibration, .chains = {}});
   for (std::size_t t = 0; t < trials.size(); ++t) {
-    const std::vector<int> postures = PosturesOf(predicted.recording, static_cast<int>(t));
+    const std::vector<int> postures = PosturesOfTrial(predicted.recording, static_cast<int>(t));
     if (postures.empty()) continue;
     scenes.push_back(MakeScene(view, predicted, trials[t], postures, T_view_ref));
   }

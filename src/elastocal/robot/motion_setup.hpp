@@ -12,6 +12,10 @@
 
 namespace elastocal {
 
+/// Share of a joint's range that postures leave free at either end, unless the project says
+/// otherwise.
+inline constexpr double kUsualLimitMargin = 0.02;
+
 /// A box in the root link's frame, m.
 struct Box {
   Eigen::Vector3d lower, upper;

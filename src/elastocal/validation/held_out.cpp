@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/measurement/moments.hpp"
 
 namespace elastocal {
 namespace {
@@ -23,14 +24,6 @@ std::vector<int> MarkersOf(const ObservationMask& seen, const Recording& recordi
   return markers;
 }
 
-std::vector<int> PosturesOf(const Recording& recording, int trial) {
-  std::vector<int> postures;
-  for (int i = 0; i < recording.posture_count(); ++i) {
-    if (recording.trial[i] == trial) postures.push_back(i);
-  }
-  return postures;
-}
-
 HeldOut Judge(const ModelComparison& comparison, const std::vector<ModelKind>& kinds,
               const Recording& recording, const CalibrationOptions& options) {
   HeldOut held_out;
@@ -45,7 +38,7 @@ HeldOut Judge(const ModelComparison& comparison, const std::vector<ModelKind>& k
   std::vector<TrialErrors> trials;
   for (std::size_t t = 0; t < recording.trials.size(); ++t) {
     const int trial = static_cast<int>(t);
-    const std::vector<int> postures = PosturesOf(recording, trial);
+    const std::vector<int> postures = PosturesOfTrial(recording, trial);
     if (postures.empty()) continue;
     TrialResiduals residuals{recording.trials[t].name,
                              recording.trials[t].kind,
