@@ -5,12 +5,12 @@ import math
 import os
 import pathlib
 import subprocess
-import tempfile
 import unittest
 
 import numpy as np
 
 import elastocal
+from scratch_case import ScratchCase
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 SHARED = pathlib.Path(os.environ.get("ELASTOCAL_SHARED_DATA", SOURCE.parent / "shared" / "data"))
@@ -123,14 +123,12 @@ def measured_project(folder, tables):
     return project
 
 
-class Instruments(SameAsTheProgram, unittest.TestCase):
+class Instruments(SameAsTheProgram, ScratchCase):
     """A virtual humanoid that a tracker, an inertial unit and a wire measure."""
 
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.scratch.cleanup)
-        cls.folder = pathlib.Path(cls.scratch.name)
+        super().setUpClass()
         cls.project = measured_project(cls.folder, {"a.csv": 20, "b.csv": 20, "other.csv": 20})
         cls.recordings, cls.other = [cls.folder / "a.csv", cls.folder / "b.csv"], [cls.folder / "other.csv"]
         cls.steps = []
@@ -181,14 +179,12 @@ class Instruments(SameAsTheProgram, unittest.TestCase):
 
 
 @unittest.skipUnless(TOUCHES[0].exists(), f"there is no {TOUCHES[0]}")
-class Table(SameAsTheProgram, unittest.TestCase):
+class Table(SameAsTheProgram, ScratchCase):
     """Touches of a table by the real TALOS."""
 
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.scratch.cleanup)
-        cls.folder = pathlib.Path(cls.scratch.name)
+        super().setUpClass()
         cls.project = elastocal.Project(TABLE)
         cls.recordings = cls.other = TOUCHES
         cls.found = elastocal.calibrate(cls.project, TOUCHES, folds=3)

@@ -11,6 +11,7 @@ import unittest
 import numpy as np
 
 import elastocal
+from scratch_case import ScratchCase
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 SHARED = pathlib.Path(os.environ.get("ELASTOCAL_SHARED_DATA", SOURCE.parent / "shared" / "data"))
@@ -20,19 +21,14 @@ TABLE = SHARED / "talos_left_arm_mocap/talos_left_arm_02_10_contact.csv"
 
 
 @unittest.skipUnless(TABLE.exists(), f"there is no {TABLE}")
-class LeftArm(unittest.TestCase):
+class LeftArm(ScratchCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.scratch.name)
+        super().setUpClass()
         cls.program([*"calibrate --kfold 0 --quiet".split(), ARM, "--recording", TABLE, "-o",
                      cls.folder / "cli"])
         cls.project = elastocal.Project(ARM)
         cls.found = elastocal.calibrate(cls.project, [TABLE], folds=0)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.scratch.cleanup()
 
     @classmethod
     def program(cls, words):

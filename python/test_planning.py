@@ -4,23 +4,22 @@ import json
 import os
 import pathlib
 import subprocess
-import tempfile
 import unittest
 
 import numpy as np
 
 import elastocal
+from scratch_case import ScratchCase
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 TALOS = SOURCE / "models/talos/project.yaml"
 QUICK = {"marker_noise_mm": 0.4, "lead_in_s": 1}  # settings of simulate, not the defaults
 
 
-class Planning(unittest.TestCase):
+class Planning(ScratchCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.scratch.name)
+        super().setUpClass()
         cls.project = elastocal.Project(TALOS)
         cls.design = elastocal.design(cls.project, chains=["head_trunk"], count=6, seed=3)
         cls.plan = elastocal.plan(cls.project, cls.design, move_s=3.0)
@@ -29,10 +28,6 @@ class Planning(unittest.TestCase):
         cls.design.save(cls.folder / "python/postures.yaml")
         cls.plan.save(cls.folder / "python/motion.csv", trajectory=cls.folder / "python/ros.yaml",
                       per_chain=cls.folder / "python")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.scratch.cleanup()
 
     def program(self, *words):
         subprocess.run([os.environ["ELASTOCAL_PROGRAM"], *map(str, words), "--quiet"], check=True)

@@ -4,22 +4,21 @@ import json
 import os
 import pathlib
 import subprocess
-import tempfile
 import unittest
 
 import numpy as np
 
 import elastocal
+from scratch_case import ScratchCase
 
 ARM = pathlib.Path(__file__).resolve().parent.parent / "tests/robots/arm6_project.yaml"
 SHORT = {"arm_postures": 12, "repetitions": 1, "move_s": 1, "rest_s": 0.8}
 
 
-class Using(unittest.TestCase):
+class Using(ScratchCase):
     @classmethod
     def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.scratch.name)
+        super().setUpClass()
         cls.project = elastocal.Project(ARM)
         elastocal.simulate(cls.project, cls.folder / "recording", trials="calibration", settings=SHORT)
         elastocal.calibrate(cls.project, [cls.folder / "recording"]).save(cls.folder / "out")
@@ -27,10 +26,6 @@ class Using(unittest.TestCase):
         lower, upper = np.clip(cls.project.robot.lower, -2, 2), np.clip(cls.project.robot.upper, -2, 2)
         positions = (lower + upper) / 2 + 0.05 * (upper - lower) * np.sin(time)[:, None]  # as files have them
         cls.motion = {"time_s": time, "positions": np.round(positions, 9)}
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.scratch.cleanup()
 
     def program(self, *words):
         return subprocess.run([os.environ["ELASTOCAL_PROGRAM"], *map(str, words), "--quiet"], capture_output=True,

@@ -10,16 +10,21 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
+
+
+def write_joints(bag, i, stamp, received):
+    state = JointState(name=["elbow", "wrist"], position=[0.125 * i, -0.5 * i], effort=[] if i == 4 else [i, math.nan])
+    state.header.stamp = stamp
+    bag.write("/joint_states", state, received)
+
+
 for compression in ("none", "lz4", "bz2"):
     with rosbag.Bag(f"bag1_{compression}.bag", "w", compression=compression, chunk_threshold=2000) as bag:
         for i in range(20):
             stamp = genpy.Time(1700000000, i * 10000000)
             received = stamp + genpy.Duration(0, 3000000)
             if i % 2 == 0:
-                state = JointState(name=["elbow", "wrist"], position=[0.125 * i, -0.5 * i],
-                                   effort=[] if i == 4 else [i, math.nan])
-                state.header.stamp = stamp
-                bag.write("/joint_states", state, received)
+                write_joints(bag, i, stamp, received)
             if i != 7:
                 pose = PoseStamped()
                 pose.header.stamp = stamp
@@ -48,10 +53,7 @@ with rosbag.Bag("tf1.bag", "w", compression="bz2") as bag:
         stamp = genpy.Time(1700000000, i * 10000000)
         received = stamp + genpy.Duration(0, 3000000)
         if i % 2 == 0:
-            state = JointState(name=["elbow", "wrist"], position=[0.125 * i, -0.5 * i],
-                               effort=[] if i == 4 else [i, math.nan])
-            state.header.stamp = stamp
-            bag.write("/joint_states", state, received)
+            write_joints(bag, i, stamp, received)
         moves = [transform(stamp, "/room", "/base_link", (0.1 * i, 0, 0)),
                  transform(stamp, "/base_link", "/elbow_link", (0, 0, 1))]
         if i != 7:
