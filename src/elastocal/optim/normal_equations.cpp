@@ -16,6 +16,23 @@ constexpr double kRidge = 1e-12;
 constexpr Eigen::Index kBatchRows = 384;  // of nuisance, eliminated in one product
 constexpr double kLeastLeft = 1e-6;       // of an added unknown, beside the others
 
+/// For each group of blocks with some in a cluster: what `product` gives of these, a vector of the
+/// group's nuisance, summed, with the cluster of the last of them.
+template <typename Groups, typename IsIn, typename Product, typename Use>
+void ForGroups(const Groups& groups, const std::vector<int>& cluster, const IsIn& is_in,
+               const Product& product, const Use& use) {
+  for (const auto& group : groups) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(group.size);
+    int of = -1;
+    for (const int block : group.blocks) {
+      if (!is_in(block)) continue;
+      of = cluster[block];
+      sum += product(block);
+    }
+    if (of >= 0) use(group, of, sum);
+  }
+}
+
 }  // namespace
 
 NormalEquations::NormalEquations(const LeastSquaresProblem& problem) : problem_(problem) {
@@ -281,26 +298,25 @@ Eigen::MatrixXd NormalEquations::Scores(const std::vector<Eigen::VectorXd>& resi
                                         const std::vector<int>& cluster, int clusters) const {
   Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(information_.rows(), clusters);
   const auto add_own = [&](int block) {
+    if (!IsIn(cluster, block)) return;
     const Eigen::VectorXd slope = OwnJacobian(block).transpose() * residuals[block];
     for (std::size_t c = 0; c < layout_[block].unknowns.size(); ++c) {
       scores(layout_[block].unknowns[c], cluster[block]) += slope[static_cast<Eigen::Index>(c)];
     }
   };
-  for (std::size_t block = 0; block < layout_.size(); ++block) {
-    const int b = static_cast<int>(block);
-    if (layout_[block].group < 0 && IsIn(cluster, b)) add_own(b);
+  for (int block = 0; block < static_cast<int>(layout_.size()); ++block) {
+    if (layout_[block].group < 0) add_own(block);
   }
-  for (const Group& group : groups_) {
-    Eigen::VectorXd own = Eigen::VectorXd::Zero(group.size);
-    int of = -1;
-    for (int block : group.blocks) {
-      if (!IsIn(cluster, block)) continue;
-      of = cluster[block];
-      add_own(block);
-      own += NuisanceJacobian(block).transpose() * residuals[block];
-    }
-    if (of >= 0) scores.col(of) -= Gain(group).transpose() * own;
-  }
+  for (const Group& group : groups_)
+    std::for_each(group.blocks.begin(), group.blocks.end(), add_own);
+  ForGroups(
+      groups_, cluster, [&](int block) { return IsIn(cluster, block); },
+      [&](int block) -> Eigen::VectorXd {
+        return NuisanceJacobian(block).transpose() * residuals[block];
+      },
+      [&](const Group& group, int of, const Eigen::VectorXd& sum) {
+        scores.col(of) -= Gain(group).transpose() * sum;
+      });
   return scores;
 }
 
@@ -334,18 +350,15 @@ std::vector<NormalEquations::Addition> NormalEquations::Add(
     score[cluster[block]] += derivative[block].dot(problem_.Residual(block));
     information[cluster[block]] += derivative[block].squaredNorm();
   }
-  for (const Group& group : groups_) {
-    Eigen::VectorXd own = Eigen::VectorXd::Zero(group.size);
-    int of = -1;
-    for (int block : group.blocks) {
-      if (!IsIn(cluster, block)) continue;
-      of = cluster[block];
-      own += NuisanceJacobian(block).transpose() * derivative[block];
-    }
-    if (of < 0) continue;
-    score[of] -= own.dot(group.own);
-    information[of] -= own.dot(group.factor.solve(own));
-  }
+  ForGroups(
+      groups_, cluster, [&](int block) { return IsIn(cluster, block); },
+      [&](int block) -> Eigen::VectorXd {
+        return NuisanceJacobian(block).transpose() * derivative[block];
+      },
+      [&](const Group& group, int of, const Eigen::VectorXd& sum) {
+        score[of] -= sum.dot(group.own);
+        information[of] -= sum.dot(group.factor.solve(sum));
+      });
   const auto clusters = static_cast<int>(factors.rows());
   const Eigen::MatrixXd cross = Product(Scores(derivative, cluster, clusters), factors);
   const Eigen::MatrixXd by_unknowns = Product(covariance, cross);
