@@ -26,8 +26,8 @@ constexpr const char* kRoom = "a laboratory";
 constexpr const char* kBody = "a robot's size";
 constexpr const char* kTurns = "two turns";
 
-std::vector<Bound> MakeBounds() {
-  std::vector<Bound> list = {
+std::vector<Bound> BoundsOfRobotAndRecording() {
+  return {
       {"couplings[].of.*", "", -1e3, 1e3, "a gear"},
       {"couplings[].offset_deg", "deg", -720, 720, kTurns},
       {"couplings[].offset_mm", "mm", -1e4, 1e4, kBody},
@@ -116,6 +116,10 @@ std::vector<Bound> MakeBounds() {
       {"calibration.floor_height_mm", "mm", 1e-3, 100, "a machined plate; a step", true},
       {"calibration.prior.deflection_mrad", "mrad", 1e-4, 1e3, "a rigid and a soft robot"},
   };
+}
+
+std::vector<Bound> BoundsOfPriors() {
+  std::vector<Bound> list;
   for (const char* angle : {"theta", "gamma", "alpha", "beta"}) {
     list.push_back({std::string("calibration.prior.") + angle + "_deg", "deg", 1e-6, 90,
                     "an encoder's step; a quarter turn", true});
@@ -124,13 +128,20 @@ std::vector<Bound> MakeBounds() {
     list.push_back({std::string("calibration.prior.") + length + "_mm", "mm", 1e-6, 1e3,
                     "below any noise; a limb", true});
   }
-  const std::vector<Bound> rest = {
+  const std::vector<Bound> others = {
       {"calibration.prior.marker_mm", "mm", 1e-3, 1e5, "cameras' noise; a laboratory", true},
       {"calibration.prior.torsion_urad_per_Nm", "urad/N.m", 1e-6, 1e6, "rigid and soft", true},
       {"calibration.prior.bending_urad_per_Nm", "urad/N.m", 1e-6, 1e6, "rigid and soft", true},
       {"calibration.prior.base_force_um_per_N", "um/N", 1e-6, 1e6, "rigid and soft", true},
       {"calibration.prior.base_moment_urad_per_Nm", "urad/N.m", 1e-6, 1e6, "rigid and soft", true},
       {"calibration.prior.torque_bias_Nm", "N.m", 1e-6, 1e4, "a sensor's range", true},
+  };
+  list.insert(list.end(), others.begin(), others.end());
+  return list;
+}
+
+std::vector<Bound> BoundsOfDesignAndTrials() {
+  return {
       {"collision.margin_mm", "mm", 0, 1e3, kBody},
       {"collision.spheres[].centre_mm[]", "mm", -1e4, 1e4, kBody},
       {"collision.spheres[].radius_mm", "mm", 0.1, 1e4, kBody},
@@ -152,6 +163,11 @@ std::vector<Bound> MakeBounds() {
       {"trials[].expected_lag_s", "s", -1e10, 1e10, "clocks that count from 1970"},
       {"Qualisys TSV X, Y, Z", "mm", -1e6, 1e6, kRoom},
       {"chains[].postures[].*", "rad or m", -1e3, 1e3, "joints' limits"},
+  };
+}
+
+std::vector<Bound> BoundsOfUrdf() {
+  return {
       {"URDF mass.value", "kg", 0, 1e5, "the largest machines"},
       {"URDF inertia.ixx", "kg.m2", -1e6, 1e6, "the largest machines"},
       {"URDF inertia.iyy", "kg.m2", -1e6, 1e6, "the largest machines"},
@@ -173,6 +189,11 @@ std::vector<Bound> MakeBounds() {
       {"URDF mesh.scale", "", -1e6, 1e6, "units from nanometres on; negative: mirrored"},
       {"URDF mimic.multiplier", "", -1e3, 1e3, "a gear"},
       {"URDF mimic.offset", "rad or m", -1e3, 1e3, "joints' limits"},
+  };
+}
+
+std::vector<Bound> BoundsOfCommands() {
+  return {
       {"assess --marker-noise-mm", "mm", 1e-3, 100, "cameras' noise"},
       {"check --level", "", 1e-9, 0.5, "a share"},
       {"compare --level", "", 1e-9, 0.5, "a share"},
@@ -196,7 +217,14 @@ std::vector<Bound> MakeBounds() {
       {"compensate --most-left-mm", "mm", 0, 1e3, "an arm"},
       {"compensate --ease-s", "s", 0, 10, "a correction that comes later than a motion ends"},
   };
-  list.insert(list.end(), rest.begin(), rest.end());
+}
+
+std::vector<Bound> MakeBounds() {
+  std::vector<Bound> list;
+  for (const auto& part : {BoundsOfRobotAndRecording(), BoundsOfPriors(), BoundsOfDesignAndTrials(),
+                           BoundsOfUrdf(), BoundsOfCommands()}) {
+    list.insert(list.end(), part.begin(), part.end());
+  }
   return list;
 }
 

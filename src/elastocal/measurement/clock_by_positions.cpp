@@ -170,29 +170,23 @@ class Comparison {
     motion.shapes.assign(markers_.size(), {});
     if (robot_time_s_.empty()) return;
     const std::vector<int> moving = MovingJoints();
-    const std::vector<int> torque_columns = TorqueColumns();
-    std::vector<double> sd(6, kPlaceSd);
-    for (std::size_t j = 0; j < moving.size(); ++j) {
-      sd.insert(sd.end(), {kAngleSd, kAngleSd, kAngleSd, kLengthSd_m, kLengthSd_m, kLengthSd_m,
-                           kComplianceSd});
-    }
-    sd.insert(sd.end(), 3 * markers_.size(), kMarkerSd_m);
-    motion.prior_sd = Eigen::VectorXd::Map(sd.data(), std::ssize(sd));
-
-    std::vector<std::vector<int>> acting(markers_.size());  // on each marker, of `moving`
+    motion.prior_sd = PriorsOfShapes(moving.size());
+    std::vector<std::vector<int>> acting(markers_.size());  // joints on each marker
     for (std::size_t m = 0; m < markers_.size(); ++m) {
-      const int body = BodyOf(m);
       std::vector<int>& unknowns = motion.shapes[m].unknowns;
-      for (int u = 0; u < 6; ++u) unknowns.push_back(u);
+      for (int u = 0; u < kOfFrame; ++u) unknowns.push_back(u);
       for (std::size_t j = 0; j < moving.size(); ++j) {
-        if (Carries(moving[j], body) == Carries(moving[j], standing_body_)) continue;
-        acting[m].push_back(static_cast<int>(j));
-        for (int u = 0; u < 7; ++u) unknowns.push_back(static_cast<int>(6 + 7 * j) + u);
+        if (Carries(moving[j], BodyOf(m)) == Carries(moving[j], standing_body_)) continue;
+        acting[m].push_back(moving[j]);
+        for (int u = 0; u < kOfJoint; ++u) {
+          unknowns.push_back(kOfFrame + kOfJoint * static_cast<int>(j) + u);
+        }
       }
-      const auto first = static_cast<int>(6 + 7 * moving.size() + 3 * m);
+      const auto first = static_cast<int>(kOfFrame + kOfJoint * moving.size() + 3 * m);
       for (int axis = 0; axis < 3; ++axis) unknowns.push_back(first + axis);
       motion.shapes[m].derivatives.setZero(3 * motion.time_s.size(), std::ssize(unknowns));
     }
+    const std::vector<int> torque_columns = TorqueColumns();
     for (Eigen::Index i = 0; i < motion.time_s.size(); ++i) {
       InterruptionPoint();
       const Eigen::VectorXd signals = *log_.At(robot_time_s_[Size(i)]);
@@ -203,26 +197,47 @@ class Comparison {
         auto rows = motion.shapes[m].derivatives.middleRows<3>(3 * i);
         rows.leftCols<3>() = Turned(Eigen::Matrix3d::Identity(), p);
         rows.middleCols<3>(3).setIdentity();
-        Eigen::Index column = 6;
-        for (const int j : acting[m]) {
-          const int k = moving[Size(j)];
-          const Joint& joint = robot_.tree.joints[Size(k)];
-          const Transform& moved = bodies[Size(k) + 1];
-          const double sign = Carries(k, BodyOf(m)) ? 1.0 : -1.0;
-          const Eigen::Matrix3d axes = sign * bodies[Size(joint.parent_body)].linear();
-          const Eigen::Vector3d lever = p - moved.translation();
-          rows.middleCols<3>(column) = Turned(axes, lever);
-          rows.middleCols<3>(column + 3) = axes;
+        Eigen::Index column = kOfFrame;
+        for (const int k : acting[m]) {
           const int torque = torque_columns[Size(k)];
-          if (torque >= 0 && joint.type == JointType::kRevolute) {
-            rows.col(column + 6) =
-                sign * signals[torque] * (moved.linear() * joint.axis).cross(lever);
-          }
-          column += 7;
+          rows.middleCols<kOfJoint>(column) =
+              ByJoint(k, BodyOf(m), p, bodies, torque < 0 ? 0.0 : signals[torque]);
+          column += kOfJoint;
         }
         rows.rightCols<3>() = bodies[Size(BodyOf(m))].linear();
       }
     }
+  }
+
+  static constexpr int kOfFrame = 6, kOfJoint = 7;  // unknowns
+
+  Eigen::VectorXd PriorsOfShapes(std::size_t moving) const {
+    std::vector<double> sd(kOfFrame, kPlaceSd);
+    for (std::size_t j = 0; j < moving; ++j) {
+      sd.insert(sd.end(), {kAngleSd, kAngleSd, kAngleSd, kLengthSd_m, kLengthSd_m, kLengthSd_m,
+                           kComplianceSd});
+    }
+    sd.insert(sd.end(), 3 * markers_.size(), kMarkerSd_m);
+    return Eigen::VectorXd::Map(sd.data(), std::ssize(sd));
+  }
+
+  /// Displacements of a marker at `p` on a body by the unknowns of joint k.
+  Eigen::Matrix<double, 3, kOfJoint> ByJoint(int k, int body, const Eigen::Vector3d& p,
+                                             const std::vector<Transform>& bodies,
+                                             double torque) const {
+    const Joint& joint = robot_.tree.joints[Size(k)];
+    const Transform& moved = bodies[Size(k) + 1];
+    const double sign = Carries(k, body) ? 1.0 : -1.0;
+    const Eigen::Matrix3d axes = sign * bodies[Size(joint.parent_body)].linear();
+    const Eigen::Vector3d lever = p - moved.translation();
+    Eigen::Matrix<double, 3, kOfJoint> by;
+    by.leftCols<3>() = Turned(axes, lever);
+    by.middleCols<3>(3) = axes;
+    by.col(6).setZero();
+    if (joint.type == JointType::kRevolute) {
+      by.col(6) = sign * torque * (moved.linear() * joint.axis).cross(lever);
+    }
+    return by;
   }
 
   // Displacements of a point at the end of `lever` by turns about the axes.

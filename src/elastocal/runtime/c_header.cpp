@@ -114,6 +114,7 @@ class CHeaderWriter {
     Constants();
     Robot();
     State();
+    ChoicesOfCommands();
     Functions();
     out_ << "#endif /* " << guard << " */\n";
     return out_.str();
@@ -226,66 +227,74 @@ class CHeaderWriter {
          << "};\n\n";
   }
 
-  void State() {
+  /// An array of the working memory, as ec_memory names it.
+  struct MemoryArray {
+    const char* type;
+    const char* name;
+    int count;
+  };
+
+  std::vector<MemoryArray> Memory() const {
+    const int joints = robot_.joints, coordinates = robot_.coordinates;
     int largest = 1;
     for (int i = 0; i < robot_.branches; ++i) largest = std::max(largest, robot_.branch_size[i]);
-    const auto array = [&](const char* type, const char* name, int count) {
-      out_ << "  " << type << " " << name << "[" << std::max(1, count) << "];\n";
-    };
+    return {{"ec_pose", "body", joints + 1},
+            {"ec_pose", "twisted", joints},
+            {"ec_pose", "target", robot_.tips},
+            {"ec_pose", "sole", robot_.feet},
+            {"double", "motion", 3 * joints},
+            {"double", "axis", 3 * joints},
+            {"double", "beyond", 4 * (joints + 1)},
+            {"double", "load", 3 * joints},
+            {"double", "root_load", 3 * joints},
+            {"double", "normal", largest * largest},
+            {"double", "factor", largest * largest},
+            {"double", "gradient", largest},
+            {"double", "step", largest},
+            {"int", "held", largest},
+            {"int", "loosed", largest},
+            {"ec_search", "search", robot_.branches},
+            {"double", "column", 6 * 64},
+            {"double", "good_q", coordinates},
+            {"double", "good_torque", joints},
+            {"double", "work_q", coordinates},
+            {"double", "best_q", coordinates},
+            {"double", "kept_q", coordinates},
+            {"double", "start_q", coordinates},
+            {"double", "lowest", coordinates},
+            {"double", "highest", coordinates},
+            {"double", "most_change", coordinates},
+            {"double", "last_q", coordinates},
+            {"double", "last_command", coordinates},
+            {"double", "given", coordinates},
+            {"double", "pace", coordinates},
+            {"ec_pose", "last_target", robot_.tips},
+            {"unsigned", "stopped", coordinates},
+            {"double", "shift", joints},
+            {"double", "side", 2 * robot_.shifts},
+            {"double", "from", 2 * robot_.shifts},
+            {"double", "centre", 3 * robot_.feet},
+            {"double", "share", robot_.feet}};
+  }
+
+  void State() {
+    const std::vector<MemoryArray> memory = Memory();
     out_ << "/* Working memory, last good input and last command of one controller: static or on "
             "its\n   stack. It holds pointers into itself: not to be copied. */\n"
             "typedef struct {\n";
-    for (const char* name : {"body"}) array("ec_pose", name, robot_.joints + 1);
-    array("ec_pose", "twisted", robot_.joints);
-    array("ec_pose", "target", robot_.tips);
-    array("ec_pose", "sole", robot_.feet);
-    array("double", "motion", 3 * robot_.joints);
-    array("double", "axis", 3 * robot_.joints);
-    array("double", "beyond", 4 * (robot_.joints + 1));
-    array("double", "load", 3 * robot_.joints);
-    array("double", "root_load", 3 * robot_.joints);
-    array("double", "normal", largest * largest);
-    array("double", "factor", largest * largest);
-    array("double", "gradient", largest);
-    array("double", "step", largest);
-    array("int", "held", largest);
-    array("int", "loosed", largest);
-    array("ec_search", "search", robot_.branches);
-    array("double", "column", 6 * 64);
-    array("double", "good_q", robot_.coordinates);
-    array("double", "good_torque", robot_.joints);
-    array("double", "work_q", robot_.coordinates);
-    array("double", "best_q", robot_.coordinates);
-    array("double", "kept_q", robot_.coordinates);
-    array("double", "start_q", robot_.coordinates);
-    array("double", "lowest", robot_.coordinates);
-    array("double", "highest", robot_.coordinates);
-    array("double", "most_change", robot_.coordinates);
-    array("double", "last_q", robot_.coordinates);
-    for (const char* name : {"last_command", "given", "pace"}) {
-      array("double", name, robot_.coordinates);
+    for (const MemoryArray& array : memory) {
+      out_ << "  " << array.type << " " << array.name << "[" << std::max(1, array.count) << "];\n";
     }
-    array("ec_pose", "last_target", robot_.tips);
-    array("unsigned", "stopped", robot_.coordinates);
-    array("double", "shift", robot_.joints);
-    array("double", "side", 2 * robot_.shifts);
-    array("double", "from", 2 * robot_.shifts);
-    array("double", "centre", 3 * robot_.feet);
-    array("double", "share", robot_.feet);
     out_ << "  ec_memory memory;\n} " << name_ << "_state;\n\n";
     out_ << "/* To be called once before anything else. */\nstatic inline void " << name_
          << "_init(" << name_ << "_state* s) {\n  ec_memory* m = &s->memory;\n";
-    for (const char* name :
-         {"body",        "twisted", "target",       "sole",        "motion",      "axis",
-          "beyond",      "load",    "root_load",    "normal",      "factor",      "gradient",
-          "step",        "held",    "loosed",       "search",      "column",      "good_q",
-          "good_torque", "work_q",  "best_q",       "kept_q",      "start_q",     "lowest",
-          "highest",     "last_q",  "last_command", "most_change", "last_target", "stopped",
-          "shift",       "side",    "from",         "centre",      "share",       "given",
-          "pace"}) {
-      out_ << "  m->" << name << " = s->" << name << ";\n";
+    for (const MemoryArray& array : memory) {
+      out_ << "  m->" << array.name << " = s->" << array.name << ";\n";
     }
     out_ << "  ec_reset(&" << name_ << "_robot, m);\n}\n\n";
+  }
+
+  void ChoicesOfCommands() {
     out_ << "/* No command changes by more from the last one, see ec_limit_changes above. */\n"
             "static inline void "
          << name_ << "_limit_changes(" << name_ << "_state* s, const double* most) {\n"

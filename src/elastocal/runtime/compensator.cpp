@@ -14,6 +14,19 @@ namespace {
 
 using Vector = Eigen::Ref<const Eigen::VectorXd>;
 
+/// One store for arrays of these lengths, with a pointer to each.
+template <typename Store, typename Parts>
+void HandOut(Store& store, const Parts& parts) {
+  std::size_t size = 0;
+  for (const auto& part : parts) size += static_cast<std::size_t>(part.second);
+  store.resize(size);
+  auto* next = store.data();
+  for (const auto& part : parts) {
+    *part.first = next;
+    next += part.second;
+  }
+}
+
 Eigen::Isometry3d ToIsometry(const ec_pose& pose) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.R);
@@ -142,20 +155,10 @@ void Compensator::Allocate() {
                                              {&links_, robot_.links},
                                              {&wanted_, robot_.tips},
                                              {&memory_.last_target, robot_.tips}};
-  const auto hand_out = [](auto& store, const auto& parts) {
-    std::size_t size = 0;
-    for (const auto& part : parts) size += static_cast<std::size_t>(part.second);
-    store.resize(size);
-    auto* next = store.data();
-    for (const auto& part : parts) {
-      *part.first = next;
-      next += part.second;
-    }
-  };
-  hand_out(numbers_, doubles);
-  hand_out(poses_, poses);
+  HandOut(numbers_, doubles);
+  HandOut(poses_, poses);
   const std::pair<int**, int> whole[] = {{&memory_.held, largest}, {&memory_.loosed, largest}};
-  hand_out(whole_, whole);
+  HandOut(whole_, whole);
   search_.resize(branches_.branch_size.size());
   memory_.search = search_.data();
   stopped_.resize(static_cast<std::size_t>(coordinates));

@@ -74,27 +74,23 @@ class Reader {
     for (Item& item : items) Items(*this, item);
   }
 
-  void Value(double& value) {
+  template <typename Number>
+  void Value(Number& value) {
+    constexpr bool kWhole = std::is_integral_v<Number>;
     std::string word;
     Value(word);
     std::size_t used = 0;
     try {
-      value = std::stod(word, &used);
+      if constexpr (kWhole) {
+        value = std::stoi(word, &used);
+      } else {
+        value = std::stod(word, &used);
+      }
     } catch (const std::exception&) {
       used = 0;
     }
-    if (used != word.size() || std::isnan(value)) Fail(word, "a number");
-  }
-  void Value(int& value) {
-    std::string word;
-    Value(word);
-    std::size_t used = 0;
-    try {
-      value = std::stoi(word, &used);
-    } catch (const std::exception&) {
-      used = 0;
-    }
-    if (used != word.size()) Fail(word, "a whole number");
+    const bool is_number = used == word.size() && value == value;  // NaN is not itself
+    if (!is_number) Fail(word, kWhole ? "a whole number" : "a number");
   }
   void Value(std::string& value) {
     value.clear();
