@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/robot/inverse_dynamics.hpp"
 #include "elastocal/robot/physical_inertia.hpp"
 #include "elastocal/robot/statics.hpp"
 #include "elastocal/simulation/standing_feet.hpp"
@@ -181,15 +182,9 @@ class MjcfWriter {
   }
 
   void Inertial(int body) {
-    double mass = 0.0;
-    Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-    for (const Link& link : tree_.links) {
-      if (link.body != body) continue;
-      mass += link.mass;
-      moment += link.mass * (link.T_body_link * link.com);
-    }
-    const Eigen::Vector3d com = mass > 0.0 ? Eigen::Vector3d(moment / mass) : moment;
-    // MuJoCo requires moving bodies to have some inertia.
+    const BodyInertia as_described = BodyInertias(tree_)[static_cast<std::size_t>(body)];
+    const Eigen::Vector3d& com = as_described.com;
+    // MuJoCo requires moving bodies to have some inertia, and one that can exist.
     Eigen::Matrix3d inertia = 1e-7 * Eigen::Matrix3d::Identity();
     for (const Link& link : tree_.links) {
       if (link.body != body) continue;
@@ -200,7 +195,7 @@ class MjcfWriter {
     const std::array entries{inertia(0, 0), inertia(1, 1), inertia(2, 2),
                              inertia(0, 1), inertia(0, 2), inertia(1, 2)};
     text += "<inertial" + Attribute("pos", Numbers(com)) +
-            Attribute("mass", Number(std::max(mass, 1e-6))) +
+            Attribute("mass", Number(std::max(as_described.mass, 1e-6))) +
             Attribute("fullinertia", Numbers(entries)) + "/>\n";
   }
 
