@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "elastocal/calibration/prediction.hpp"
+#include "elastocal/calibration/distance_parabola.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/measurement/column_step.hpp"
 
@@ -31,43 +31,20 @@ bool IsSliding(const RobotTree& tree, int coordinate) {
   return tree.joints[tree.coordinate_joint[coordinate]].type == JointType::kPrismatic;
 }
 
-/// By posture, m^2; the robot stands where the fit has it.
-Eigen::VectorXd SquaresOf(const CalibrationResult& result, const Recording& recording,
-                          const CalibrationOptions& options) {
-  const Eigen::MatrixXd distances =
-      Predict(result.model, result.delta, recording, options, &result.placement).distances;
-  return distances.unaryExpr([](double d) { return std::isfinite(d) ? d * d : 0.0; })
-      .rowwise()
-      .sum();
+/// A joint is shown in postures whose markers it moves by a tenth or more of how far it moves those
+/// of any posture. With what it carries out of sight, it still changes the loads that deflect other
+/// links, and that does not tell where it is.
+double LeastCurvature(const DistanceParabola& parabola) {
+  return kShown * kShown * std::max(0.0, parabola.Curvature().maxCoeff());
 }
 
-/// Squares of all postures where a joint is at -1, 0 and 1 steps from where it was.
-struct Parabola {
-  Eigen::VectorXd before, at, after;
+Eigen::ArrayXd ToLeast(const DistanceParabola& parabola) {
+  return parabola.ToLeast(LeastCurvature(parabola));
+}
 
-  /// 1 in postures whose markers the joint moves by a tenth or more of how far it moves those of
-  /// any posture, 0 elsewhere: with what it carries out of sight, a joint still changes the loads
-  /// that deflect other links, and that does not tell where it is.
-  Eigen::ArrayXd Shown() const {
-    const Eigen::ArrayXd curvature = (before + after - 2.0 * at).array();
-    const double least = kShown * kShown * std::max(0.0, curvature.maxCoeff());
-    return (curvature > least).cast<double>();
-  }
-  /// In steps, to where the squares are least; 0 where nothing shows it.
-  Eigen::ArrayXd ToLeast() const {
-    const Eigen::ArrayXd curvature = (before + after - 2.0 * at).array();
-    return (Shown() > 0.0).select(0.5 * (before - after).array() / curvature, 0.0);
-  }
-};
-
-Parabola ParabolaOf(const CalibrationResult& result, const Recording& at, int coordinate,
-                    double step, const Eigen::VectorXd& squares,
-                    const CalibrationOptions& options) {
-  Recording other = at;
-  other.q.col(coordinate).array() -= step;
-  Eigen::VectorXd before = SquaresOf(result, other, options);
-  other.q.col(coordinate).array() += 2.0 * step;
-  return {std::move(before), squares, SquaresOf(result, other, options)};
+/// By posture: 1 where the joint is shown, else 0.
+Eigen::ArrayXd Shown(const DistanceParabola& parabola) {
+  return (parabola.Curvature() > LeastCurvature(parabola)).cast<double>();
 }
 
 /// By the median size of what is shown; 0 where that is in few postures.
@@ -126,21 +103,17 @@ std::vector<CoarsePositions> FindCoarsePositions(const CalibrationResult& result
   const double chance = kTimesChance * joints / std::max(1, coordinates);  // free numbers fit noise
   if (joints == 0 || chance > kMostByChance) return {};
   Recording moved = recording;
-  const Eigen::VectorXd given = SquaresOf(result, recording, options);
+  const Eigen::VectorXd given = SquaresByPosture(result, recording, options);
   Eigen::VectorXd at = given;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     for (const CoarsePositions& one : coarse) {
       const double h = 0.25 * one.step;
-      const Parabola parabola = ParabolaOf(result, moved, one.coordinate, h, at, options);
+      const DistanceParabola parabola = ParabolaOf(result, moved, one.coordinate, h, at, options);
       const Eigen::ArrayXd logged = recording.q.col(one.coordinate).array();
       const double most = kMostOfStep * one.step;
       auto q = moved.q.col(one.coordinate);
-      q = (q.array() + h * parabola.ToLeast())
-              .max(logged - most)
-              .min(logged + most)
-              .matrix()
-              .eval();
-      at = SquaresOf(result, moved, options);
+      q = (q.array() + h * ToLeast(parabola)).max(logged - most).min(logged + most).matrix().eval();
+      at = SquaresByPosture(result, moved, options);
     }
   }
   if (!(at.sum() < std::min(kLeftWithoutSteps, 1.0 - chance) * given.sum())) return {};
@@ -159,7 +132,7 @@ std::optional<ScatteredPositions> FindScatteredPositions(const CalibrationResult
   const int coordinates = 3 * recording.marker_count();
   const double chance = kTimesChance / std::max(1, coordinates);
   if (chance > kMostByChance || recording.posture_count() == 0) return std::nullopt;
-  const Eigen::VectorXd given = SquaresOf(result, recording, options);
+  const Eigen::VectorXd given = SquaresByPosture(result, recording, options);
   double least = std::min(kLeftWithoutScatter, 1.0 - chance) * given.sum();
   std::optional<ScatteredPositions> found;
   for (const int k : result.model.active_joints) {
@@ -171,10 +144,11 @@ std::optional<ScatteredPositions> FindScatteredPositions(const CalibrationResult
     Eigen::VectorXd at = given;
     Eigen::ArrayXd shown;
     for (int step = 0; step < kSteps; ++step) {
-      const Parabola parabola = ParabolaOf(result, moved, joint.coordinate, enough, at, options);
-      if (step == 0) shown = parabola.Shown();
-      q.array() += enough * shown * parabola.ToLeast();
-      at = SquaresOf(result, moved, options);
+      const DistanceParabola parabola =
+          ParabolaOf(result, moved, joint.coordinate, enough, at, options);
+      if (step == 0) shown = Shown(parabola);
+      q.array() += enough * shown * ToLeast(parabola);
+      at = SquaresByPosture(result, moved, options);
       if (at.sum() > kLeftWithoutSteps * given.sum()) break;
     }
     if (!(at.sum() < least)) continue;
@@ -183,7 +157,7 @@ std::optional<ScatteredPositions> FindScatteredPositions(const CalibrationResult
     const double off = SdOfShown(scatter, shown);
     if (off < enough) continue;
     q = recording.q.col(joint.coordinate) + scatter;
-    at = SquaresOf(result, moved, options);
+    at = SquaresByPosture(result, moved, options);
     if (!(at.sum() < least)) continue;
     least = at.sum();
     found = {joint.coordinate, off, at.sum() / given.sum()};

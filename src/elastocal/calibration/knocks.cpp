@@ -2,11 +2,12 @@
 #include "elastocal/calibration/knocks.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include "elastocal/calibration/displacement_step.hpp"
 #include "elastocal/calibration/fit.hpp"
+#include "elastocal/calibration/split_markers.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/moments.hpp"
 #include "elastocal/measurement/thinned_motions.hpp"
 
@@ -51,29 +52,19 @@ std::string NameBefore(const std::string& name, const std::vector<std::string>& 
   }
 }
 
-/// What was seen of a marker in the first `before` postures goes to a new one; it keeps what was
-/// seen from posture `after` on.
-void SplitColumns(int marker, const std::string& name, Eigen::Index before, Eigen::Index after,
-                  Recording& recording) {
-  Eigen::MatrixXd column = recording.markers.middleCols<3>(3 * marker);
-  column.bottomRows(column.rows() - before).setConstant(std::numeric_limits<double>::quiet_NaN());
-  recording.markers.middleCols<3>(3 * marker)
-      .topRows(after)
-      .setConstant(std::numeric_limits<double>::quiet_NaN());
-  recording.markers.conservativeResize(Eigen::NoChange, recording.markers.cols() + 3);
-  recording.markers.rightCols<3>() = column;
-  recording.marker_names.push_back(name);
+/// By posture, whether it is one of the first `count`.
+std::vector<char> First(std::ptrdiff_t count, const Recording& recording) {
+  std::vector<char> first(Size(recording.posture_count()), 0);
+  std::fill_n(first.begin(), count, 1);
+  return first;
 }
 
 void SplitOne(const Knock& knock, ErrorModel& model, Recording& recording) {
-  ErrorModel extended = model;
-  for (int m : knock.markers) {
-    extended.markers.push_back(model.markers[m]);
-    Marker& before = extended.markers.back();
-    before.name = NameBefore(before.name, recording.marker_names);
-    SplitColumns(m, before.name, knock.posture, knock.posture, recording);
+  std::vector<std::string> names;
+  for (const int m : knock.markers) {
+    names.push_back(NameBefore(model.markers[m].name, recording.marker_names));
   }
-  model = SelectMarkers(extended, recording.marker_names);
+  SplitMarkersOf(knock.markers, names, First(knock.posture, recording), model, recording);
 }
 
 /// The experiment as far as knocks have been found in it.
@@ -211,8 +202,11 @@ void SplitLeftOut(const std::vector<Knock>& knocks, const ErrorModel& model,
         std::upper_bound(left_out.begin(), left_out.end(), searched[knock.last_before]);
     const auto after = std::lower_bound(left_out.begin(), left_out.end(), searched[knock.posture]);
     for (int m : knock.markers) {
-      SplitColumns(m, model.markers[recording.marker_count()].name, before - left_out.begin(),
-                   after - left_out.begin(), recording);
+      SplitMarker(m, model.markers[recording.marker_count()].name,
+                  First(before - left_out.begin(), recording), recording);
+      recording.markers.middleCols<3>(3 * m)
+          .middleRows(before - left_out.begin(), after - before)
+          .setConstant(kNaN);
     }
   }
 }
@@ -232,8 +226,7 @@ void AddUnseenMarkers(const ErrorModel& model, Recording& recording) {
     recording.marker_names.push_back(model.markers[m].name);
   }
   recording.markers.conservativeResize(Eigen::NoChange, 3 * recording.marker_count());
-  recording.markers.rightCols(recording.markers.cols() - before)
-      .setConstant(std::numeric_limits<double>::quiet_NaN());
+  recording.markers.rightCols(recording.markers.cols() - before).setConstant(kNaN);
 }
 
 }  // namespace elastocal

@@ -137,68 +137,75 @@ class OddSearch {
     return joints;
   }
 
-  std::vector<PostureChange> Changes() const {
-    std::vector<PostureChange> changes;
-    const std::vector<int> joints = MovedJoints();
-    const auto name = [&](int k) { return model_.tree.joints[Size(k)].name; };
-    const auto coordinate = [&](int k) { return model_.tree.joints[Size(k)].coordinate; };
-    for (const int k : joints) {
-      const int c = coordinate(k);
-      changes.push_back({name(k) + ": the sign of its positions is reversed",
-                         [c](const Recording& of, int i, Recording& to) {
-                           to.q(i, c) = -of.q(i, c);
-                           return true;
-                         }});
-      for (const int by : {-1, 1}) {
-        changes.push_back(
-            {name(k) + ": its positions are those of the row " + (by < 0 ? "before" : "after"),
-             [c, by](const Recording& of, int i, Recording& to) {
-               if (i - by < 0 || i - by >= of.posture_count()) return false;
-               to.q(i, c) = of.q(i - by, c);
-               return true;
-             }});
-      }
-      if (model_.tree.joints[Size(k)].type == JointType::kPrismatic) continue;
-      changes.push_back({name(k) + ": its positions are off by half a turn",
-                         [c](const Recording& of, int i, Recording& to) {
-                           to.q(i, c) = of.q(i, c) + std::numbers::pi;
-                           return true;
-                         }});
-    }
-    for (std::size_t a = 0; a < joints.size(); ++a) {
-      for (std::size_t b = a + 1; b < joints.size(); ++b) {
-        const int c = coordinate(joints[a]), d = coordinate(joints[b]);
-        changes.push_back(
-            {name(joints[a]) + " and " + name(joints[b]) + ": their positions are exchanged",
-             [c, d](const Recording& of, int i, Recording& to) {
-               to.q(i, c) = of.q(i, d);
-               to.q(i, d) = of.q(i, c);
-               return true;
-             }});
-      }
-    }
+  const Joint& JointAt(int k) const { return model_.tree.joints[Size(k)]; }
+
+  void AddChangesOf(const Joint& joint, std::vector<PostureChange>& changes) const {
+    const int c = joint.coordinate;
+    changes.push_back({joint.name + ": the sign of its positions is reversed",
+                       [c](const Recording& of, int i, Recording& to) {
+                         to.q(i, c) = -of.q(i, c);
+                         return true;
+                       }});
     for (const int by : {-1, 1}) {
       changes.push_back(
-          {std::string("the markers are those of the row ") + (by < 0 ? "before" : "after"),
-           [by](const Recording& of, int i, Recording& to) {
-             if (i + by < 0 || i + by >= of.posture_count()) return false;
-             to.q.row(i) = of.q.row(i + by);
+          {joint.name + ": its positions are those of the row " + (by < 0 ? "before" : "after"),
+           [c, by](const Recording& of, int i, Recording& to) {
+             if (i - by < 0 || i - by >= of.posture_count()) return false;
+             to.q(i, c) = of.q(i - by, c);
              return true;
            }});
     }
+    if (joint.type == JointType::kPrismatic) return;
+    changes.push_back({joint.name + ": its positions are off by half a turn",
+                       [c](const Recording& of, int i, Recording& to) {
+                         to.q(i, c) = of.q(i, c) + std::numbers::pi;
+                         return true;
+                       }});
+  }
+
+  static PostureChange Exchanged(const Joint& a, const Joint& b) {
+    return {a.name + " and " + b.name + ": their positions are exchanged",
+            [c = a.coordinate, d = b.coordinate](const Recording& of, int i, Recording& to) {
+              to.q(i, c) = of.q(i, d);
+              to.q(i, d) = of.q(i, c);
+              return true;
+            }};
+  }
+
+  static PostureChange MarkersOfRow(int by) {
+    return {std::string("the markers are those of the row ") + (by < 0 ? "before" : "after"),
+            [by](const Recording& of, int i, Recording& to) {
+              if (i + by < 0 || i + by >= of.posture_count()) return false;
+              to.q.row(i) = of.q.row(i + by);
+              return true;
+            }};
+  }
+
+  static PostureChange Exchanged(const LabelCluster& a, const LabelCluster& b) {
+    return {"the labels of " + a.name + " and " + b.name + " are exchanged",
+            [x = a.markers, y = b.markers](const Recording& of, int i, Recording& to) {
+              for (std::size_t k = 0; k < x.size(); ++k) {
+                to.markers.row(i).segment<3>(3 * x[k]) = of.markers.row(i).segment<3>(3 * y[k]);
+                to.markers.row(i).segment<3>(3 * y[k]) = of.markers.row(i).segment<3>(3 * x[k]);
+              }
+              return true;
+            }};
+  }
+
+  std::vector<PostureChange> Changes() const {
+    std::vector<PostureChange> changes;
+    const std::vector<int> joints = MovedJoints();
+    for (const int k : joints) AddChangesOf(JointAt(k), changes);
+    for (std::size_t a = 0; a < joints.size(); ++a) {
+      for (std::size_t b = a + 1; b < joints.size(); ++b) {
+        changes.push_back(Exchanged(JointAt(joints[a]), JointAt(joints[b])));
+      }
+    }
+    for (const int by : {-1, 1}) changes.push_back(MarkersOfRow(by));
     for (std::size_t a = 0; a < clusters_.size(); ++a) {
       for (std::size_t b = a + 1; b < clusters_.size(); ++b) {
-        const std::vector<int> x = clusters_[a].markers, y = clusters_[b].markers;
-        if (x.size() != y.size()) continue;
-        changes.push_back(
-            {"the labels of " + clusters_[a].name + " and " + clusters_[b].name + " are exchanged",
-             [x, y](const Recording& of, int i, Recording& to) {
-               for (std::size_t k = 0; k < x.size(); ++k) {
-                 to.markers.row(i).segment<3>(3 * x[k]) = of.markers.row(i).segment<3>(3 * y[k]);
-                 to.markers.row(i).segment<3>(3 * y[k]) = of.markers.row(i).segment<3>(3 * x[k]);
-               }
-               return true;
-             }});
+        const bool alike = clusters_[a].markers.size() == clusters_[b].markers.size();
+        if (alike) changes.push_back(Exchanged(clusters_[a], clusters_[b]));
       }
     }
     return changes;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <string>
@@ -16,6 +15,7 @@
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/math/transform.hpp"
 #include "elastocal/measurement/moments.hpp"
+#include "elastocal/measurement/trial_names.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/linkage.hpp"
 
@@ -145,62 +145,79 @@ class OrderSearch {
     return (shown_.col(c) - trial_.q.col(c)).cwiseAbs().maxCoeff() > 1e-6;
   }
 
+  double OffColumn(int joint, int column) const {
+    return UsualSize(shown_.col(joint) - given_.col(column));
+  }
+
+  /// By coordinate its column, -1: none yet.
+  struct Columns {
+    std::vector<int> of;
+    std::vector<char> taken;
+
+    void Give(int joint, int column) {
+      of[Size(joint)] = column;
+      taken[Size(column)] = 1;
+    }
+  };
+
   /// Joints that are where their columns have them keep these; of the others, the nearest first.
   std::vector<int> Assigned() const {
-    std::vector<int> assigned(order_.size(), -1);
-    std::vector<char> taken(order_.size(), 0);
+    Columns columns{std::vector<int>(order_.size(), -1), std::vector<char>(order_.size(), 0)};
     std::vector<int> open, hidden;
-    for (std::size_t c = 0; c < order_.size(); ++c) {
-      const auto at = static_cast<int>(c);
+    for (int c = 0; c < static_cast<int>(order_.size()); ++c) {
       const bool turns =
-          std::find(coordinates_.begin(), coordinates_.end(), at) != coordinates_.end();
-      const int column = order_[c];
-      const bool kept =
-          turns && IsShown(at) && UsualSize(shown_.col(at) - given_.col(column)) < kOffItsColumn;
-      if (!turns || kept) {
-        assigned[c] = column;
-        taken[Size(column)] = 1;
+          std::find(coordinates_.begin(), coordinates_.end(), c) != coordinates_.end();
+      const int column = order_[Size(c)];
+      if (!turns || (IsShown(c) && OffColumn(c, column) < kOffItsColumn)) {
+        columns.Give(c, column);
       } else {
-        (IsShown(at) ? open : hidden).push_back(at);
+        (IsShown(c) ? open : hidden).push_back(c);
       }
     }
-    while (!open.empty()) {
-      double least = std::numeric_limits<double>::infinity();
-      int joint = -1, column = -1;
-      for (const int c : open) {
-        for (const int k : coordinates_) {
-          if (taken[Size(k)] != 0) continue;
-          const double off = UsualSize(shown_.col(c) - given_.col(k));
-          if (off < least) {
-            least = off;
-            joint = c;
-            column = k;
-          }
-        }
+    return GiveNearest(open, columns) && GiveLeft(hidden, columns) ? columns.of : order_;
+  }
+
+  /// Whether there is a column for each of these joints, which markers show.
+  bool GiveNearest(std::vector<int> joints, Columns& columns) const {
+    struct Distance {
+      double off;
+      int joint, column;
+    };
+    std::vector<Distance> distances;
+    for (const int joint : joints) {
+      for (const int column : coordinates_) {
+        if (columns.taken[Size(column)] != 0) continue;
+        distances.push_back({OffColumn(joint, column), joint, column});
       }
-      if (joint < 0) return order_;
-      assigned[Size(joint)] = column;
-      taken[Size(column)] = 1;
-      std::erase(open, joint);
     }
-    // What no marker shows keeps its column or, if another joint has taken it, gets that one's.
-    for (const int c : hidden) {
-      if (taken[Size(c)] != 0) continue;
-      assigned[Size(c)] = c;
-      taken[Size(c)] = 1;
+    std::stable_sort(distances.begin(), distances.end(),
+                     [](const Distance& a, const Distance& b) { return a.off < b.off; });
+    for (const Distance& nearest : distances) {
+      if (columns.taken[Size(nearest.column)] != 0 || columns.of[Size(nearest.joint)] >= 0)
+        continue;
+      columns.Give(nearest.joint, nearest.column);
+      std::erase(joints, nearest.joint);
     }
-    for (const int c : hidden) {
-      if (assigned[Size(c)] >= 0) continue;
+    return joints.empty();
+  }
+
+  /// What no marker shows keeps its column or, if another joint has taken it, gets that one's.
+  /// Whether there is one for each.
+  bool GiveLeft(const std::vector<int>& joints, Columns& columns) const {
+    for (const int c : joints) {
+      if (columns.taken[Size(c)] == 0) columns.Give(c, c);
+    }
+    for (const int c : joints) {
+      if (columns.of[Size(c)] >= 0) continue;
       int column = c;
-      while (taken[Size(column)] != 0) {
-        const auto by = std::find(assigned.begin(), assigned.end(), column);
-        if (by == assigned.end()) return order_;
-        column = static_cast<int>(by - assigned.begin());
+      while (columns.taken[Size(column)] != 0) {
+        const auto by = std::find(columns.of.begin(), columns.of.end(), column);
+        if (by == columns.of.end()) return false;
+        column = static_cast<int>(by - columns.of.begin());
       }
-      assigned[Size(c)] = column;
-      taken[Size(column)] = 1;
+      columns.Give(c, column);
     }
-    return assigned;
+    return true;
   }
 
   const ErrorModel& model_;
@@ -244,7 +261,7 @@ std::vector<TriedCorrection> FindColumnOrders(const ErrorModel& nominal,
   };
   struct Copied {
     Recording told;  ///< the copy where the markers show it
-    std::string trials;
+    std::vector<int> trials;
   };
   std::map<std::pair<int, int>, Copied> copied;  // by copy and original
   for (int trial = 0; trial < static_cast<int>(recording.trials.size()); ++trial) {
@@ -252,33 +269,33 @@ std::vector<TriedCorrection> FindColumnOrders(const ErrorModel& nominal,
     if (static_cast<int>(postures.size()) < kFewestInOrder) continue;
     OrderSearch search(nominal, SelectPostures(recording, postures));
     for (const auto& pair : search.Copies()) {
-      Copied& one = copied.try_emplace(pair, Copied{recording, ""}).first->second;
+      Copied& one = copied.try_emplace(pair, Copied{recording, {}}).first->second;
       one.told.q(postures, pair.first) = search.shown().col(pair.first);
-      one.trials += (one.trials.empty() ? "" : ", ") + recording.trials[Size(trial)].name;
+      one.trials.push_back(trial);
     }
     if (FurthestMarker(model, geometry, recording, postures) < far) continue;
     const std::vector<int> order = search.Run();
     if (!order.empty()) trials_of[order].push_back(trial);
   }
   for (auto& [pair, one] : copied) {
-    found.push_back({"",
-                     fmt::format("{}: its column is a copy of that of {}, number for number, in "
-                                 "trial {}, and the markers show it to move otherwise",
-                                 name_of(pair.first), name_of(pair.second), one.trials),
-                     std::move(one.told)});
+    found.push_back(
+        {"",
+         fmt::format("{}: its column is a copy of that of {}, number for number, in "
+                     "trial {}, and the markers show it to move otherwise",
+                     name_of(pair.first), name_of(pair.second), TrialNames(recording, one.trials)),
+         std::move(one.told)});
   }
   for (const auto& [order, trials] : trials_of) {
     Recording ordered = recording;
-    std::string names;
     for (const int trial : trials) {
-      names += (names.empty() ? "" : ", ") + recording.trials[Size(trial)].name;
       for (const int i : PosturesOfTrial(recording, trial)) {
         for (std::size_t c = 0; c < order.size(); ++c) {
           ordered.q(i, static_cast<Eigen::Index>(c)) = recording.q(i, order[c]);
         }
       }
     }
-    found.push_back({"", DescribeOrder(order, tree, names), std::move(ordered)});
+    found.push_back(
+        {"", DescribeOrder(order, tree, TrialNames(recording, trials)), std::move(ordered)});
   }
   return found;
 }

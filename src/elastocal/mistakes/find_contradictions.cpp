@@ -13,6 +13,8 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/measurement/thinned_motions.hpp"
+#include "elastocal/measurement/trial_names.hpp"
+#include "elastocal/mistakes/estimated_place.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/held_out_contrast.hpp"
 #include "elastocal/mistakes/moved_between.hpp"
@@ -76,24 +78,17 @@ std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
 
 /// Whether the estimate has each of two markers where the project has the other.
 bool AreExchanged(const CalibrationResult& result, int a, int b) {
-  const int first = result.model.parameter_count() - 3 * result.model.marker_count();
-  const auto nominal = [&](int m) { return result.model.markers[Size(m)].p_link_marker; };
   const auto from = [&](int m, int other) {
-    return (nominal(m) + result.delta.segment<3>(first + 3 * m) - nominal(other)).squaredNorm();
+    return (EstimatedPlace(result, m) - result.model.markers[Size(other)].p_link_marker)
+        .squaredNorm();
   };
   return from(a, b) + from(b, a) < from(a, a) + from(b, b);
 }
 
 std::string TrialsThatSee(const Recording& recording, int a, int b) {
-  std::string names;
-  for (int trial = 0; trial < static_cast<int>(recording.trials.size()); ++trial) {
-    for (int i = 0; i < recording.posture_count(); ++i) {
-      if (recording.trial[i] != trial || !Seen(recording, i, a) || !Seen(recording, i, b)) continue;
-      names += (names.empty() ? "" : ", ") + recording.trials[Size(trial)].name;
-      break;
-    }
-  }
-  return names;
+  return TrialNames(recording, TrialsWith(recording, [&](int i) {
+                      return Seen(recording, i, a) && Seen(recording, i, b);
+                    }));
 }
 
 /// Two markers of one cluster that have each other's labels in all trials of the estimate that see
@@ -169,11 +164,9 @@ std::string OrInThoseOfTheEstimate(const RecordingFault& fault, const Recording&
                                fault.end == 0 && to_the_end &&
                                std::abs(fault.posture - estimated.posture_count()) <= kAtTheSeam;
   if (!in_all_held_out) return "";
-  std::string names;
-  for (const int trial : TrialsThatMove(all, fault.coordinate)) {
-    if (trial >= std::ssize(estimated.trials)) break;
-    names += (names.empty() ? "" : ", ") + estimated.trials[Size(trial)].name;
-  }
+  std::vector<int> moving = TrialsThatMove(all, fault.coordinate);
+  std::erase_if(moving, [&](int trial) { return trial >= std::ssize(estimated.trials); });
+  const std::string names = TrialNames(estimated, moving);
   return names.empty() ? ""
                        : "; it may as well be off by the opposite in " + names +
                              ", which the recording does not tell: measure it there again";

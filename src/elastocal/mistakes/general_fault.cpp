@@ -19,6 +19,7 @@
 #include "elastocal/mistakes/placed_gains.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/recorded/find_base.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/robot/move_motors.hpp"
 
@@ -95,12 +96,18 @@ class FaultExplanation {
     return FaultAndRemedy(fault, project_.tree, general_.recording);
   }
 
-  CalibrationResult Fit(const ErrorModel& model, const BaseParameters& base,
-                        const Recording& recording) const {
-    return Calibrate(model, recording, base, general_.kind, general_.options);
-  }
+  struct SplitRecording {
+    ErrorModel model;
+    Recording recording;
+  };
+
   CalibrationResult Fit(const Recording& recording) const {
-    return Fit(general_.model, general_.base, recording);
+    return Calibrate(general_.model, recording, general_.base, general_.kind, general_.options);
+  }
+  CalibrationResult Fit(const SplitRecording& split) const {
+    return Calibrate(split.model, split.recording,
+                     FindBaseOf(project_, split.model, split.recording), general_.kind,
+                     general_.options);
   }
 
   static bool IsSame(const RecordingFault& a, const RecordingFault& b) {
@@ -217,7 +224,7 @@ class FaultExplanation {
     for (const auto& [begin, end] : Stretches(first.kind)) {
       for (const LabelCluster& cluster : MovableClusters(first.kind, begin, end)) {
         SplitRecording split = SplitWithin(cluster, begin, end);
-        const CalibrationResult fit = Fit(split.model, BaseOf(split.model), split.recording);
+        const CalibrationResult fit = Fit(split);
         const double left = MarkerError(fit, split.recording, general_.options);
         if (!(left < least)) continue;
         least = left;
@@ -228,18 +235,13 @@ class FaultExplanation {
     }
     if (found.empty()) return "";
     // Another robot moves other clusters as well.
-    const CalibrationResult fit = Fit(best.model, BaseOf(best.model), best.recording);
+    const CalibrationResult fit = Fit(best);
     if (!FindRecordingFaults(fit, best.recording, general_.options).empty()) return "";
     return fmt::format(
         "cluster {}: its markers seem to be elsewhere on their link from {} on (knocked, or glued "
         "on again?). Calibrate the postures before and after apart",
         found, DescribePosture(general_.recording, found_at));
   }
-
-  struct SplitRecording {
-    ErrorModel model;
-    Recording recording;
-  };
 
   /// With the markers of a cluster as two sets, within the postures and beside them.
   SplitRecording SplitWithin(const LabelCluster& cluster, int begin, int end) const {
@@ -282,10 +284,6 @@ class FaultExplanation {
     }
     std::erase_if(clusters, [](const LabelCluster& one) { return one.markers.empty(); });
     return clusters;
-  }
-
-  BaseParameters BaseOf(const ErrorModel& model) const {
-    return FindBaseParameters(model, project_.identifiability);
   }
 
   /// Postures in which a cluster may be elsewhere where a joint seems to be: of a trial, all.

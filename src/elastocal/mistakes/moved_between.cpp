@@ -7,9 +7,12 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/identifiability/base_parameters.hpp"
+#include "elastocal/calibration/split_markers.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/measurement/trial_names.hpp"
+#include "elastocal/mistakes/estimated_place.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/recorded/find_base.hpp"
 
 namespace elastocal {
 namespace {
@@ -19,13 +22,6 @@ constexpr double kLeftWhereMoved = 0.5;   // of the error with the cluster in on
 constexpr double kLeastMoved = 1e-3;      // m
 constexpr double kOneAlone = 3.0;         // times any other marker of the cluster
 constexpr double kLabelDistance = 20e-3;  // m: of one marker, which no glue lets slip so far
-
-/// Where the fit has a marker, in the frame of its link.
-Eigen::Vector3d PlaceOf(const CalibrationResult& result, int marker) {
-  const int first = result.model.parameter_count() - 3 * result.model.marker_count();
-  return result.model.markers[Size(marker)].p_link_marker +
-         result.delta.segment<3>(first + 3 * marker);
-}
 
 /// Whether a marker is seen in any of these postures, or any other one.
 bool IsSeen(const Recording& recording, int marker, const std::vector<char>& postures, bool other) {
@@ -55,48 +51,30 @@ Moved TakeAsTwo(const Project& project, const CalibrationResult& together, const
     moved.left = std::numeric_limits<double>::infinity();
     return moved;
   }
-  // Those of the suspect's trials get markers of their own.
   const int own = split.marker_count();
-  const auto count = static_cast<Eigen::Index>(markers.size());
+  std::vector<std::string> names_there;
   for (const int m : markers) {
-    model.markers.push_back(together.model.markers[Size(m)]);
-    model.markers.back().name += "(moved)";
-    split.marker_names.push_back(model.markers.back().name);
     moved.names.push_back(all.marker_names[Size(m)]);
+    names_there.push_back(moved.names.back() + "(moved)");
   }
-  split.markers.conservativeResize(Eigen::NoChange, split.markers.cols() + 3 * count);
-  split.markers.rightCols(3 * count).setConstant(kNaN);
-  for (int i = 0; i < all.posture_count(); ++i) {
-    if (suspect.there[Size(i)] == 0) continue;
-    for (std::size_t k = 0; k < markers.size(); ++k) {
-      auto from = split.markers.block<1, 3>(i, 3 * markers[k]);
-      split.markers.block<1, 3>(i, 3 * (own + static_cast<int>(k))) = from;
-      from.setConstant(kNaN);
-    }
-  }
-  model = SelectMarkers(model, split.marker_names);
-  const CalibrationResult fit = Calibrate(
-      model, split, FindBaseParameters(model, project.identifiability), together.kind, options);
+  SplitMarkersOf(markers, names_there, suspect.there, model, split);
+  const CalibrationResult fit =
+      Calibrate(model, split, FindBaseOf(project, model, split), together.kind, options);
   moved.left = MarkerError(fit, split, options);
   for (std::size_t k = 0; k < markers.size(); ++k) {
     moved.distances.push_back(
-        (PlaceOf(fit, own + static_cast<int>(k)) - PlaceOf(fit, markers[k])).norm());
+        (EstimatedPlace(fit, own + static_cast<int>(k)) - EstimatedPlace(fit, markers[k])).norm());
   }
   return moved;
 }
 
 std::string TrialsOf(const Recording& all, const MovedSuspect& suspect) {
-  std::string names;
-  for (int trial = 0; trial < static_cast<int>(all.trials.size()); ++trial) {
-    bool shows = false;
-    for (int i = 0; i < all.posture_count() && !shows; ++i) {
-      shows = all.trial[Size(i)] == trial && suspect.there[Size(i)] != 0 &&
-              std::any_of(suspect.cluster.markers.begin(), suspect.cluster.markers.end(),
-                          [&](int m) { return Seen(all, i, m); });
-    }
-    if (shows) names += (names.empty() ? "" : ", ") + all.trials[Size(trial)].name;
-  }
-  return names;
+  const std::vector<int>& markers = suspect.cluster.markers;
+  return TrialNames(all, TrialsWith(all, [&](int i) {
+                      return suspect.there[Size(i)] != 0 &&
+                             std::any_of(markers.begin(), markers.end(),
+                                         [&](int m) { return Seen(all, i, m); });
+                    }));
 }
 
 std::string DescribeMoved(const Recording& all, const MovedSuspect& suspect, const Moved& moved,

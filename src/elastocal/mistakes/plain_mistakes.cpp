@@ -20,11 +20,11 @@
 #include "elastocal/calibration/odd_postures.hpp"
 #include "elastocal/calibration/placed_misfit.hpp"
 #include "elastocal/calibration/told_positions.hpp"
-#include "elastocal/identifiability/base_parameters.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/log_alternatives.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/recorded/find_base.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 
 namespace elastocal {
@@ -94,11 +94,9 @@ Alternative Thinned(Alternative robot) {
 
 std::optional<CalibrationResult> Fit(const Alternative& robot, ModelKind kind,
                                      const Project& project) {
-  IdentifiabilityOptions identifiability = project.identifiability;
-  if (robot.recording.free_root) identifiability.root = RootPose::kFree;
   try {
-    const BaseParameters base = FindBaseParameters(robot.model, identifiability);
-    return Calibrate(robot.model, robot.recording, base, kind, project.calibration);
+    return Calibrate(robot.model, robot.recording,
+                     FindBaseOf(project, robot.model, robot.recording), kind, project.calibration);
   } catch (const InputError&) {
     return std::nullopt;
   }

@@ -104,8 +104,8 @@ class Acceptance {
   std::optional<TriedCorrection> Next(const ErrorModel& nominal, const Recording& recording,
                                       std::set<std::string>& done) {
     std::optional<TriedCorrection> next;
-    for (TriedCorrection& one : Suspicions(project_, nominal, recording, kMostUndone)) {
-      if (one.name.empty()) continue;
+    for (TriedCorrection& one :
+         Suspicions(project_, nominal, recording, kMostUndone, SuspicionsOf::kNamed)) {
       shown_.insert(one.name);
       if (!next && IsWanted(one.name) && !done.contains(one.name)) next = std::move(one);
     }

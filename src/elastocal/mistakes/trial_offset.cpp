@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "elastocal/calibration/prediction.hpp"
+#include "elastocal/calibration/distance_parabola.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
@@ -21,22 +21,17 @@ constexpr double kLeftByOffset = 0.5;    // of the squared distances
 constexpr double kLeftOfFit = 0.5;       // of the error of the fit
 constexpr std::size_t kMostOffsets = 4;  // that are undone and fitted
 constexpr int kNewtonSteps = 2;
-constexpr int kFewestOfTrial = 3;  // postures
+constexpr double kLeastCurvature = 1e-12;  // of the squared distances
+constexpr int kFewestOfTrial = 3;          // postures
 constexpr std::size_t kFewestTrials = 2;
 
-/// By trial, m^2.
-Eigen::VectorXd SquaresByTrial(const CalibrationResult& result, const Recording& recording,
-                               const CalibrationOptions& options) {
-  const Eigen::MatrixXd distances =
-      Predict(result.model, result.delta, recording, options, &result.placement).distances;
-  Eigen::VectorXd squares =
-      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(recording.trials.size()));
+/// Of numbers by posture.
+Eigen::VectorXd SumsByTrial(const Eigen::VectorXd& by_posture, const Recording& recording) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(recording.trials.size()));
   for (int i = 0; i < recording.posture_count(); ++i) {
-    for (const double d : distances.row(i)) {
-      if (std::isfinite(d)) squares[recording.trial[Size(i)]] += d * d;
-    }
+    sums[recording.trial[Size(i)]] += by_posture[i];
   }
-  return squares;
+  return sums;
 }
 
 void Move(const Eigen::VectorXd& by_trial, int coordinate, Recording& recording) {
@@ -50,28 +45,26 @@ struct TrialOffset {
   double left = 0.0;  ///< sum of all squared distances, m^2
 };
 
-/// Of one joint, in each trial by itself.
+/// Of one joint, in each trial by itself. `by_posture`: squared distances as recorded, m^2.
 void AddOffsets(const CalibrationResult& result, const Recording& recording,
-                const CalibrationOptions& options, const Eigen::VectorXd& given, const Joint& joint,
+                const CalibrationOptions& options, Eigen::VectorXd by_posture, const Joint& joint,
                 std::vector<TrialOffset>& found) {
+  const Eigen::VectorXd given = SumsByTrial(by_posture, recording);
   const double enough = joint.type == JointType::kPrismatic ? kLeastTrialShift : kLeastTrialOffset;
   Recording moved = recording;
-  Eigen::VectorXd by = Eigen::VectorXd::Zero(given.size()), at = given;
+  Eigen::VectorXd by = Eigen::VectorXd::Zero(given.size());
   for (int step = 0; step < kNewtonSteps; ++step) {
-    const auto beside = [&](double sign) {
-      Recording other = moved;
-      other.q.col(joint.coordinate).array() += sign * enough;
-      return SquaresByTrial(result, other, options);
-    };
-    const Eigen::ArrayXd before = beside(-1.0).array(), after = beside(1.0).array();
-    const Eigen::ArrayXd curvature = before + after - 2.0 * at.array();
-    const Eigen::VectorXd change =
-        (curvature > 1e-12 * given.sum())
-            .select(enough * 0.5 * (before - after) / curvature.max(1e-300), 0.0);
+    DistanceParabola parabola =
+        ParabolaOf(result, moved, joint.coordinate, enough, by_posture, options);
+    for (Eigen::VectorXd* squares : {&parabola.before, &parabola.at, &parabola.after}) {
+      *squares = SumsByTrial(*squares, recording);
+    }
+    const Eigen::VectorXd change = enough * parabola.ToLeast(kLeastCurvature * given.sum());
     by += change;
     Move(change, joint.coordinate, moved);
-    at = SquaresByTrial(result, moved, options);
+    by_posture = SquaresByPosture(result, moved, options);
   }
+  const Eigen::VectorXd at = SumsByTrial(by_posture, recording);
   for (Eigen::Index trial = 0; trial < given.size(); ++trial) {
     const double left = given.sum() - given[trial] + at[trial];
     const auto postures =
@@ -129,7 +122,7 @@ std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
                                               const CalibrationOptions& options) {
   if (recording.trials.size() < kFewestTrials) return std::nullopt;
   const RobotTree& tree = result.model.tree;
-  const Eigen::VectorXd given = SquaresByTrial(result, recording, options);
+  const Eigen::VectorXd given = SquaresByPosture(result, recording, options);
   std::vector<TrialOffset> offsets;
   for (const int k : result.model.active_joints) {
     const Joint& joint = tree.joints[Size(k)];

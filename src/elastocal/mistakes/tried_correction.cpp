@@ -2,6 +2,7 @@
 #include "elastocal/mistakes/tried_correction.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -50,7 +51,9 @@ void AddUndone(const LogSuspicion& one, const RobotTree& tree, const Recording& 
 }
 
 std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel& nominal,
-                                        const Recording& recording, std::size_t most) {
+                                        const Recording& recording, std::size_t most,
+                                        SuspicionsOf which) {
+  const bool all = which == SuspicionsOf::kAll;
   const std::vector<LabelCluster> clusters = SeenClusters(project, recording);
   TableSuspicions suspicions = FindTableSuspicions(nominal, recording, clusters);
   if (!recording.trials.empty()) {
@@ -69,14 +72,16 @@ std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel
     if (used < most) AddUndone(one, project.tree, recording, tried);
     ++used;
   }
-  for (TriedCorrection& order : FindColumnOrders(nominal, recording)) {
-    tried.push_back(std::move(order));
+  if (all) {
+    std::vector<TriedCorrection> orders = FindColumnOrders(nominal, recording);
+    std::move(orders.begin(), orders.end(), std::back_inserter(tried));
   }
   if (const std::optional<RowShift> shift = FindRowShift(nominal, recording)) {
     tried.push_back({fmt::format("rows:{:+d}", shift->rows), DescribeShift(*shift, recording),
                      WithoutShift(recording, *shift), WithoutPartner(*shift, recording)});
   }
-  if (!recording.trials.empty() && LooksMirrored(nominal, recording, MostLeft(project.tree))) {
+  if (all && !recording.trials.empty() &&
+      LooksMirrored(nominal, recording, MostLeft(project.tree))) {
     tried.insert(tried.begin(), {"", kLeftHanded, Mirrored(recording)});
   }
   return tried;

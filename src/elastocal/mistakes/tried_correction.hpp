@@ -30,9 +30,13 @@ TriedCorrection Undone(const LogSuspicion& one, const RobotTree& tree, const Rec
 void AddUndone(const LogSuspicion& one, const RobotTree& tree, const Recording& recording,
                std::vector<TriedCorrection>& tried);
 
+enum class SuspicionsOf { kAll, kNamed };
+
 /// What the nominal robot makes one suspect, with the recording that is left once it is undone; at
-/// most so many of labels and of the log.
+/// most so many of labels and of the log. kNamed: without those that have no name, whose search
+/// takes longest.
 std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel& nominal,
-                                        const Recording& recording, std::size_t most);
+                                        const Recording& recording, std::size_t most,
+                                        SuspicionsOf which = SuspicionsOf::kAll);
 
 }  // namespace elastocal

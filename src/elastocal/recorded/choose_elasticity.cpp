@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "elastocal/math/input_error.hpp"
-#include "elastocal/recorded/recorded_model.hpp"
+#include "elastocal/recorded/find_base.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 
 namespace elastocal {
@@ -54,10 +54,7 @@ std::optional<ElasticityTrial> TryElasticity(const Recording& recording,
                                              int threads, const Project& project) {
   const Recording sample = Sample(recording);
   const ErrorModel model = SelectMarkers(MakeProjectModel(project, {}), sample.marker_names);
-  IdentifiabilityOptions identifiability = project.identifiability;
-  if (seed) identifiability.seed = *seed;
-  if (HasFreeRoot(sample)) identifiability.root = RootPose::kFree;
-  const BaseParameters base = FindBaseParameters(model, identifiability);
+  const BaseParameters base = FindBaseOf(project, model, sample, seed);
   const ModelKind kind = ModelKinds(model).back();
   ElasticityTrial trial;
   try {
