@@ -77,15 +77,17 @@ TEST_F(TiagoCauses, HysteresisOfTheWristAndTwistOfTheColumnHelpOnAnotherDay) {
   EXPECT_LT(with, 2.1e-3);
 }
 
-// By the defaults, everything being decided anew in each fold.
+// By the defaults, everything being decided anew in each fold, causes too.
 TEST_F(TiagoCauses, TenFoldsForetellTheErrorOfAnotherDay) {
   const Project project = ProjectWith("auto");
   CalibrationRun run = CalibrateExperiment(project, {training_});
   ASSERT_EQ(run.cross_validation.folds, 10);
   const double foretold = run.cross_validation.metrics[static_cast<int>(ModelKind::kFull)].rmse_3d;
   const double found = OnAnotherDay(project, run).rmse_3d;
-  EXPECT_NEAR(foretold, found, 0.25 * found);
-  EXPECT_NEAR(foretold, 1.982e-3, 5e-5);  // docs/accuracy.md
+  EXPECT_NEAR(foretold, found, 0.15 * found);
+  // docs/accuracy.md. By causes that all postures chose, 1.982 mm would be foretold: 24 % too
+  // little.
+  EXPECT_NEAR(foretold, 2.593e-3, 5e-5);
 }
 
 // Ten postures, with all joints open, do not tell how far the model errs from one to the next: the
