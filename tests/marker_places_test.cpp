@@ -2,6 +2,7 @@
 // What measured places of markers tell: the last frame, which no marker tells otherwise.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -9,6 +10,7 @@
 #include "elastocal/io/marker_places_file.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/pipeline/known_places.hpp"
+#include "elastocal/validation/transfer.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/invented_arm.hpp"
 #include "tests/scratch_folder.hpp"
@@ -106,6 +108,54 @@ TEST_F(MarkerPlaces, ThatScatterByMoreThanTheySayCountLess) {
   for (const int i : LastFrame()) {
     EXPECT_LT(std::abs(result.delta[i] - truth[i]), 4.0 * result.sd[i]);
   }
+}
+
+// With the true joints a refit is as far from the places as these were measured; with the zero of
+// the last joint off by 40 mrad (2 mm at a marker) the markers of the tool are not, and the others
+// still are.
+TEST_F(MarkerPlaces, ARefitSaysHowFarItIsFromThem) {
+  constexpr int kRobots = 20;
+  const Parameter& last_zero = model_.parameters[static_cast<std::size_t>(LastFrame()[0])];
+  const int tool = FindLink(model_.tree, "tool");
+  const int body = model_.tree.links[static_cast<std::size_t>(tool)].body;
+  double squares = 0.0;
+  int numbers = 0;
+  for (int robot = 1; robot <= kRobots; ++robot) {
+    const auto seed = static_cast<std::uint64_t>(robot);
+    const Eigen::VectorXd truth = Truth(robot, 10e-3);
+    const std::vector<MarkerMeasurement> places = Measured(truth, kStated, seed);
+    const Recording recording =
+        MakeSyntheticRecording(model_, truth, {.postures = 40, .marker_sd = 0.2e-3, .seed = seed});
+    CalibrationOptions options;
+    KnowMarkers(places, model_, options.earlier);
+    std::map<std::string, double> joints;
+    for (int i = 0; i < model_.parameter_count(); ++i) {
+      const Parameter& parameter = model_.parameters[static_cast<std::size_t>(i)];
+      if (!IsExternal(parameter.kind)) joints[parameter.name] = truth[i];
+    }
+    const auto residuals = [&] {
+      return PlaceResiduals(places, RefitTo(model_, recording, base_, options, joints).result);
+    };
+    const std::vector<PlaceResidual> right = residuals();
+    ASSERT_EQ(right.size(), model_.markers.size());
+    for (const PlaceResidual& one : right) {
+      EXPECT_LT(one.in_sds(), 3.0) << one.marker;
+      squares += one.squares;
+      numbers += 3;
+    }
+    joints[last_zero.name] += 40e-3;
+    double of_tool = 0.0;
+    for (const PlaceResidual& one : residuals()) {
+      const auto marker = std::ranges::find(model_.markers, one.marker, &Marker::name);
+      if (model_.tree.links[static_cast<std::size_t>(marker->link)].body == body) {
+        of_tool = std::max(of_tool, one.in_sds());
+      } else {
+        EXPECT_LT(one.in_sds(), 3.0) << one.marker;
+      }
+    }
+    EXPECT_GT(of_tool, 2.0);
+  }
+  EXPECT_NEAR(squares / numbers, 1.0, 0.2);
 }
 
 // Two measurements of one number: the mean weighted by the inverse variances.

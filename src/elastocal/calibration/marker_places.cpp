@@ -48,18 +48,16 @@ void Measure(Eigen::Index row, double value, double variance, EarlierEstimate& k
   known.covariance -= column * column.transpose() / total;
 }
 
-/// A place and what is left there.
-struct Left {
-  std::string marker;
-  double distance = 0.0, squares = 0.0;
-};
+}  // namespace
 
-std::vector<Left> WhatIsLeft(const std::vector<MarkerMeasurement>& places,
-                             const CalibrationResult& result) {
+double PlaceResidual::in_sds() const { return std::sqrt(squares / 3.0); }
+
+std::vector<PlaceResidual> PlaceResiduals(const std::vector<MarkerMeasurement>& places,
+                                          const CalibrationResult& result) {
   // Where the place alone tells a direction, nothing can be left, and rounding is no evidence. A
   // scatter of postures that is in the covariance is no part of what places tell.
   constexpr double kLeastShare = 0.05;
-  std::vector<Left> left;
+  std::vector<PlaceResidual> left;
   for (const MarkerMeasurement& place : places) {
     std::array<int, 3> rows{};
     bool fitted = HasMarker(result.model, place.marker);
@@ -88,8 +86,6 @@ std::vector<Left> WhatIsLeft(const std::vector<MarkerMeasurement>& places,
   return left;
 }
 
-}  // namespace
-
 void KnowMarkers(const std::vector<MarkerMeasurement>& places, const ErrorModel& model,
                  EarlierEstimate& known) {
   for (const MarkerMeasurement& place : places) {
@@ -111,14 +107,14 @@ void KnowMarkers(const std::vector<MarkerMeasurement>& places, const ErrorModel&
 PlaceAgreement JudgeMarkers(const std::vector<MarkerMeasurement>& places,
                             const CalibrationResult& result, double probability) {
   PlaceAgreement agreement;
-  std::vector<Left> left = WhatIsLeft(places, result);
+  std::vector<PlaceResidual> left = PlaceResiduals(places, result);
   if (left.empty()) return agreement;
-  std::ranges::sort(left, std::greater<>(), &Left::squares);
+  std::ranges::sort(left, std::greater<>(), &PlaceResidual::squares);
   const double median = left[left.size() / 2].squares;
   agreement.factor = std::sqrt(std::max(1.0, median / ChiSquareQuantile(0.5, 3.0)));
   const double most = agreement.factor * agreement.factor *
                       ChiSquareQuantile(1.0 - probability / static_cast<double>(left.size()), 3.0);
-  for (const Left& one : left) {
+  for (const PlaceResidual& one : left) {
     if (one.squares > most) agreement.contradictory.push_back({one.marker, one.distance});
   }
   return agreement;

@@ -22,6 +22,20 @@ struct MarkerMeasurement {
 void KnowMarkers(const std::vector<MarkerMeasurement>& places, const ErrorModel& model,
                  EarlierEstimate& known);
 
+/// How far an estimate that was made with a measured place has the marker from it.
+struct PlaceResidual {
+  std::string marker;
+  double distance = 0.0;  ///< m
+  /// Chi-squared of the three numbers: what is left has the variance of the measurement less that
+  /// of the estimate there, of which the place is a part.
+  double squares = 0.0;
+  double in_sds() const;  ///< root mean square of the three, in standard deviations; 1 is expected
+};
+
+/// Of the markers whose places were fitted.
+std::vector<PlaceResidual> PlaceResiduals(const std::vector<MarkerMeasurement>& places,
+                                          const CalibrationResult& result);
+
 /// A place that contradicts where the data and the other places have the marker.
 struct ContradictoryPlace {
   std::string marker;
@@ -38,8 +52,7 @@ struct PlaceAgreement {
   std::vector<ContradictoryPlace> contradictory;
 };
 
-/// What is left at a place has the variance of the measurement less that of the estimate there, of
-/// which the place is a part; a chance of `probability` that a right place is named.
+/// By the residuals of the places; a chance of `probability` that a right place is named.
 PlaceAgreement JudgeMarkers(const std::vector<MarkerMeasurement>& places,
                             const CalibrationResult& result, double probability);
 

@@ -77,6 +77,26 @@ std::string ScaleText(const CalibrationRun& run) {
       1.0 + least, 1.0 + most, reach, 1e3 * open);
 }
 
+/// Where the errors of the verdict lie if many such postures are left out, and what they do not
+/// say.
+std::string HeldOutText(const CalibrationRun& run) {
+  const Deployment& deployment = run.deployment;
+  const auto between = [](const RmseInterval& interval) {
+    return Millimetres(interval.low, 2) + " to " + Millimetres(interval.high, 2) + " mm";
+  };
+  std::string text = ".\n  On held-out postures" + WithoutOutliersText(run) + ". ";
+  if (deployment.urdf_interval) {
+    text += "Of many such postures, 95 % interval: " + between(*deployment.urdf_interval);
+    if (deployment.compensated_interval) {
+      text += " by the URDF, " + between(*deployment.compensated_interval) + " with compensation";
+    }
+    text += ". ";
+  }
+  return text +
+         "Another day and other postures may show more: before deploying, validate on another "
+         "recording.\n";
+}
+
 /// One sentence for whoever reads no table.
 std::string VerdictText(const CalibrationRun& run) {
   if (!run.verdict.objections.empty()) {
@@ -97,8 +117,7 @@ std::string VerdictText(const CalibrationRun& run) {
   if (run.held_out) return text + ".\n" + ScaleText(run);
   const bool folded = run.cross_validation.folds > 0;
   return text +
-         (folded ? ".\n  On held-out postures" + WithoutOutliersText(run) +
-                       ". Before deploying, validate on another recording.\n"
+         (folded ? HeldOutText(run)
                  : ".\n  In the fit. Before deploying, cross-validate (--kfold 10) and validate "
                    "on another recording.\n") +
          ScaleText(run);

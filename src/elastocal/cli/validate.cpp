@@ -81,6 +81,18 @@ std::string VerdictText(const ValidationRun& run) {
   return text + ".\n\n";
 }
 
+/// How well measured places of markers agree; empty where none were given.
+std::string PlacesText(const ValidationRun& run) {
+  if (run.places.empty()) return "";
+  TextTable table({"measured place", "distance mm", "in standard deviations"});
+  for (const PlaceResidual& place : run.places) {
+    table.Add({place.marker, fmt::format("{:.2f}", 1e3 * place.distance),
+               fmt::format("{:.1f}", place.in_sds())});
+  }
+  return "\nThe refitted markers and their measured places (1 standard deviation is expected)\n" +
+         table.Render();
+}
+
 std::string RunText(const ValidationRun& run) {
   std::string text = VerdictText(run) +
                      fmt::format("{} with the calibration from {}\n{} postures, {} markers\n\n",
@@ -93,7 +105,7 @@ std::string RunText(const ValidationRun& run) {
                         DescribeObservation(run.recording, outliers[i].posture, outliers[i].marker),
                         1e3 * outliers[i].residual);
   }
-  return text;
+  return text + PlacesText(run);
 }
 
 std::vector<std::string> ErrorsOf(const ValidationRun& run) {

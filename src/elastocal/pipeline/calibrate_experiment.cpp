@@ -191,7 +191,11 @@ void WarnOfWhatWasRecorded(Work& work) {
 void CrossValidateRun(int folds, Work& work) {
   const ExperimentOptions& options = work.options;
   CalibrationRun& run = work.run;
-  ExperimentData data{work.project, work.as_recorded.calibration, options.seed, {}};
+  ExperimentData data{work.project,
+                      work.as_recorded.calibration,
+                      options.seed,
+                      {},
+                      run.causes.has_value() && !run.extra.empty()};
   if (!run.elasticity.empty()) {
     data.open_elasticity = work.project.elasticity;
     data.open_elasticity->torsion = work.given.elasticity.torsion;
@@ -204,7 +208,7 @@ void CrossValidateRun(int folds, Work& work) {
                                                     .seed = options.seed.value_or(1),
                                                     .threads = options.threads},
                                                    OfStep(options.progress, "cross-validation"));
-    run.decided_once = DecidedOnce(data, run.causes.has_value() && !run.extra.empty());
+    run.decided_once = DecidedOnce(data);
   } catch (const InputError& error) {  // a fold has fewer equations than unknowns
     if (options.folds) throw;
     run.warnings.push_back(std::string("not cross-validated: ") + error.what());

@@ -39,7 +39,7 @@ std::string UnitOfLoad(const Correction& correction) {
 
 Axis VariableAxis(const CausePicture& picture, const Correction& correction) {
   const std::string& joint = picture.driver;
-  const bool turns = picture.is_angle;
+  const bool turns = picture.driver_turns;
   switch (picture.variable) {
     case CauseVariable::kPosition:
       if (!turns) return {"position of " + joint, "mm", 1e3};

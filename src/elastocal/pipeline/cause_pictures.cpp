@@ -110,7 +110,11 @@ class Painter {
       ChooseJoint(picture);
       return;
     }
-    if (picture.joint >= 0) picture.driver = model_.tree.joints[Nth(picture.joint)].name;
+    if (picture.joint >= 0) {
+      const Joint& driver = model_.tree.joints[Nth(picture.joint)];
+      picture.driver = driver.name;
+      picture.driver_turns = driver.type == JointType::kRevolute;
+    }
     if (correction.joint >= 0) picture.owner = model_.tree.joints[Nth(correction.joint)].name;
     if (correction.marker >= 0) picture.owner = correction.marker_name;
     picture.is_angle = correction.joint < 0
@@ -138,7 +142,7 @@ class Painter {
     }
     const Joint& joint = model_.tree.joints[Nth(picture.joint)];
     picture.driver = picture.owner = joint.name;
-    picture.is_angle = joint.type == JointType::kRevolute;
+    picture.is_angle = picture.driver_turns = joint.type == JointType::kRevolute;
   }
 
   /// By how much one unit of a parameter displaces what the picture shows.

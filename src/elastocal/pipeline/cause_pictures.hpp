@@ -33,6 +33,7 @@ struct CausePicture {
   int joint = -1;             ///< whose position, load or motion is the variable; -1: of none
   std::string driver, owner;  ///< name of that joint, and of the one displaced; empty: of none
   bool is_angle = false;      ///< whether the displacement is in rad, and not in m
+  bool driver_turns = true;   ///< whether the driver is a revolute joint, and not a slide
   int axis = 2;               ///< of the joint's deflection (JointLoads)
   double compliance = 0.0;    ///< about it, as estimated, rad/(N.m) or m/N
   std::vector<int> postures;

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "elastocal/pipeline/choose_model.hpp"
 #include "elastocal/recorded/choose_elasticity.hpp"
 
 namespace elastocal {
@@ -17,13 +18,19 @@ bool ChoosesElasticity(const ExperimentData& data) {
 /// (docs/accuracy.md).
 constexpr int kInnerFolds = 5;
 
-/// The project with the elastic joints that these postures choose.
-Project ProjectOfFold(const ExperimentData& data, const Recording& training) {
+/// The project with the elastic joints and, where all postures took some, the causes that these
+/// postures choose.
+Project ProjectOfFold(const ExperimentData& data, const Measurements& training) {
   Project project = data.project;
+  if (data.chose_causes) {
+    if (data.open_elasticity) project.elasticity = *data.open_elasticity;
+    ChooseModel(training, data.seed, kInnerFolds, 1, project);
+    return project;
+  }
   if (!ChoosesElasticity(data)) return project;
   ElasticityChoice chosen = project.elasticity;
   project.elasticity = *data.open_elasticity;
-  ChooseElasticity(training, data.seed, kInnerFolds, 1, project);
+  ChooseElasticity(training.calibration, data.seed, kInnerFolds, 1, project);
   chosen.torsion = project.elasticity.torsion;
   chosen.bending = project.elasticity.bending;
   project.elasticity = std::move(chosen);
@@ -34,7 +41,7 @@ FoldData MakeExperimentFold(const ExperimentData& data, const std::vector<int>& 
                             const std::vector<int>& held_out) {
   Measurements measured;
   measured.calibration = SelectPostures(data.as_recorded, training);
-  const Project project = ProjectOfFold(data, measured.calibration);
+  const Project project = ProjectOfFold(data, measured);
   RecordedModel robot = MakeRecordedModel(project, data.seed, measured);
   FoldData fold;
   fold.held_out = SelectPostures(data.as_recorded, held_out);
@@ -76,11 +83,9 @@ CrossValidation CrossValidateExperiment(const ExperimentData& data, const Record
   return validation;
 }
 
-std::vector<std::string> DecidedOnce(const ExperimentData& data, bool causes_chosen) {
-  std::vector<std::string> decided;
-  if (data.open_elasticity && !ChoosesElasticity(data)) decided.emplace_back("elasticity");
-  if (causes_chosen) decided.emplace_back("causes");
-  return decided;
+std::vector<std::string> DecidedOnce(const ExperimentData& data) {
+  if (data.open_elasticity && !ChoosesElasticity(data)) return {"elasticity"};
+  return {};
 }
 
 }  // namespace elastocal

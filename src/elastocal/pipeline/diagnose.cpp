@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -215,7 +216,12 @@ std::string DescribeCause(const CauseReport& report, const CauseFinding& finding
   const Correction& correction = report.corrections[static_cast<std::size_t>(parameter.correction)];
   const std::size_t dot = finding.cause.rfind('.');
   std::string what = finding.cause.substr(dot + 1);
-  std::replace(what.begin(), what.end(), '_', ' ');
+  constexpr std::string_view kCoupling = "coupling_";  // the name of the other joint stays
+  if (what.starts_with(kCoupling)) {
+    what.replace(0, kCoupling.size(), "coupling to ");
+  } else {
+    std::replace(what.begin(), what.end(), '_', ' ');
+  }
   return fmt::format("{}: {} of {}, {}; the held-out error {} by {:.2g} {}",
                      finding.cause.substr(0, dot), what, SizeOf(report, finding),
                      ByWhat(correction.shape), finding.gain >= 0.0 ? "falls" : "rises",

@@ -197,15 +197,17 @@ void AddStance(const CalibrationRun& run, Json& json) {
 /// What a user takes home, and its error on data that were not used for it.
 Json DeploymentJson(const CalibrationRun& run) {
   const Deployment& deployment = run.deployment;
-  const auto artefact = [&](double rmse) {
-    return Json{{"rmse_3d_mm", Finite(1e3 * rmse)},
-                {"uncalibrated", Finite(1e3 * deployment.uncalibrated)}};
+  const auto artefact = [&](double rmse, const std::optional<RmseInterval>& interval) {
+    Json of{{"rmse_3d_mm", Finite(1e3 * rmse)},
+            {"uncalibrated", Finite(1e3 * deployment.uncalibrated)}};
+    if (interval) of["interval_95_mm"] = {1e3 * interval->low, 1e3 * interval->high};
+    return of;
   };
   Json json;
   json["judged_on"] = deployment.judged_on;
-  json["urdf"] = artefact(deployment.urdf);
+  json["urdf"] = artefact(deployment.urdf, deployment.urdf_interval);
   json["urdf"]["model"] = ModelKindName(deployment.urdf_kind);
-  json["compensated"] = artefact(deployment.compensated);
+  json["compensated"] = artefact(deployment.compensated, deployment.compensated_interval);
   const std::vector<std::string> never = NeverApplied(run.extra);
   if (!never.empty()) json["compensated"]["not_exported"] = never;
   return json;

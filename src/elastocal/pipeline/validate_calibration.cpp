@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/pipeline/validate_calibration.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/statistics.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
@@ -62,16 +64,37 @@ double ErrorOn(const Recording& recording, const RecordedModel& robot, const Pro
 
 /// From now on the markers' places that were measured are known, as they are stated: the joints are
 /// not fitted, so that what contradicts the places may be the calibration.
-void KnowPlaces(const std::filesystem::path& file, const RecordedModel& robot,
-                const Recording& recording, Project& project, ValidationRun& run) {
-  if (file.empty()) return;
+std::vector<MarkerMeasurement> KnowPlaces(const std::filesystem::path& file,
+                                          const RecordedModel& robot, const Recording& recording,
+                                          Project& project, ValidationRun& run) {
+  if (file.empty()) return {};
   if (run.frozen) {
     throw InputError(file.string() +
                      ": measured places of markers (--marker-places) and --frozen: nothing is "
                      "fitted beside them");
   }
-  KnowMarkers(OpenMarkerPlaces(file, project, recording, robot.knocks, run.warnings), robot.model,
-              project.calibration.earlier);
+  std::vector<MarkerMeasurement> places =
+      OpenMarkerPlaces(file, project, recording, robot.knocks, run.warnings);
+  KnowMarkers(places, robot.model, project.calibration.earlier);
+  return places;
+}
+
+/// How far the refitted markers are from their measured places; one that is further off than chance
+/// allows is named.
+void CompareWithPlaces(const std::vector<MarkerMeasurement>& places, double probability,
+                       ValidationRun& run) {
+  if (places.empty()) return;
+  const CalibrationResult& refit = run.transfer.calibrated.result;
+  run.places = PlaceResiduals(places, refit);
+  const double most = ChiSquareQuantile(
+      1.0 - probability / static_cast<double>(std::max<std::size_t>(1, run.places.size())), 3.0);
+  for (const PlaceResidual& place : run.places) {
+    if (place.squares <= most) continue;
+    run.warnings.push_back(fmt::format(
+        "marker {} is {:.2g} mm from its measured place ({:.1f} standard deviations where 1 is "
+        "expected): the calibration has the frame of its link elsewhere, or the place is wrong",
+        place.marker, 1e3 * place.distance, place.in_sds()));
+  }
 }
 
 /// What a URDF has a place for: without compliances and corrections, also where its geometry is
@@ -153,8 +176,10 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
   const RecordedModel robot = MakeRecordedModel(project, options.seed, measured);
   CheckApplies(run.calibration, project, robot.model);
   CheckWaist(run, measured.calibration);
-  KnowPlaces(options.marker_places, robot, measured.calibration, project, run);
+  const std::vector<MarkerMeasurement> places =
+      KnowPlaces(options.marker_places, robot, measured.calibration, project, run);
   run.transfer = TransferTo(measured.calibration, robot, project, run);
+  CompareWithPlaces(places, project.calibration.outlier_probability, run);
   const std::vector<RecordingMistake> mistakes =
       FindMistakesBy(project, options.seed, as_recorded, ErrorOf(run.transfer),
                      [&](const RecordedModel& plain, const Recording& corrected) {
@@ -216,6 +241,11 @@ std::string MakeValidationJson(const ValidationRun& run) {
     json["outliers"].push_back({{"posture", outlier.posture},
                                 {"marker", run.recording.marker_names[outlier.marker]},
                                 {"residual_mm", 1e3 * outlier.residual}});
+  }
+  for (const PlaceResidual& place : run.places) {
+    json["marker_places"].push_back({{"marker", place.marker},
+                                     {"distance_mm", 1e3 * place.distance},
+                                     {"in_sds", place.in_sds()}});
   }
   json["mistakes"] = run.mistakes;
   json["warnings"] = run.warnings;

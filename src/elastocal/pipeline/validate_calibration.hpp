@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/calibration/marker_places.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/project/project.hpp"
@@ -28,7 +29,8 @@ struct ValidationRun {
   /// Errors that the calibration expects, and what the recording shows, m: by the calibrated URDF,
   /// or by the calibrated model if frozen. Expected 0: the calibration left nothing out.
   double predicted = 0.0, shown = 0.0;
-  bool own_recording = false;  ///< whether the calibration was made from the recording
+  std::vector<PlaceResidual> places = {};  ///< of markers that were measured on their links
+  bool own_recording = false;              ///< whether the calibration was made from the recording
 
   bool converged() const;
   /// Whether the calibrated robot explains the recording better than the uncalibrated one, outliers

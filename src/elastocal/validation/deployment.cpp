@@ -30,15 +30,22 @@ Deployment ChooseDeployment(const ModelComparison& comparison, const CrossValida
     const auto k = static_cast<int>(kind);
     return (on_folds ? validation.metrics : comparison.metrics_all)[k].rmse_3d;
   };
+  const auto interval = [&](ModelKind kind) -> std::optional<RmseInterval> {
+    if (!on_folds) return std::nullopt;
+    return IntervalOfRmse(validation.distances[static_cast<int>(kind)], validation.unit_of);
+  };
   deployment.uncalibrated = rmse(ModelKind::kUncalibrated);
-  deployment.urdf = rmse(ModelKind::kGeometric);
   deployment.compensated = kNaN;
-  if (comparison.largest_kind() != ModelKind::kFull) return deployment;
-  deployment.compensated = rmse(ModelKind::kFull);
-  if (rmse(ModelKind::kRigid) < deployment.urdf) {
-    deployment.urdf_kind = ModelKind::kRigid;
-    deployment.urdf = rmse(ModelKind::kRigid);
+  deployment.urdf = rmse(ModelKind::kGeometric);
+  if (comparison.largest_kind() == ModelKind::kFull) {
+    deployment.compensated = rmse(ModelKind::kFull);
+    deployment.compensated_interval = interval(ModelKind::kFull);
+    if (rmse(ModelKind::kRigid) < deployment.urdf) {
+      deployment.urdf_kind = ModelKind::kRigid;
+      deployment.urdf = rmse(ModelKind::kRigid);
+    }
   }
+  deployment.urdf_interval = interval(deployment.urdf_kind);
   return deployment;
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "elastocal/validation/error_table.hpp"
+#include "elastocal/validation/metrics.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 
 namespace elastocal {
@@ -17,6 +19,8 @@ struct Deployment {
   ModelKind urdf_kind = ModelKind::kGeometric;
   std::string judged_on;  ///< "held-out trials", "held-out postures" or "the fit"
   double uncalibrated = 0.0, urdf = 0.0, compensated = 0.0;
+  /// By the scatter of held-out postures (IntervalOfRmse); nothing where others judge.
+  std::optional<RmseInterval> urdf_interval = {}, compensated_interval = {};
 };
 
 /// Judges by held-out trials where there are any (`table` is not null), else by the folds of the

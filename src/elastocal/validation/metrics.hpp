@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,5 +22,16 @@ struct ErrorMetrics {
 /// Metrics of `distances` (postures x markers, as ResidualNorms gives them, m) over the
 /// observations in `mask` that were predicted (finite distances). NaN if there are none.
 ErrorMetrics ComputeMetrics(const Eigen::MatrixXd& distances, const ObservationMask& mask);
+
+/// A 95 % interval of an RMSE, m.
+struct RmseInterval {
+  double low = 0.0, high = 0.0;
+};
+
+/// Where the 3-D RMSE of many such postures lies, by the scatter of the squares from one unit to
+/// the next, as Student's t on a logarithmic scale. `distances` as above, NaN where not observed;
+/// `unit_of`: of each posture, those of a unit being much alike. Nothing for fewer than five units.
+std::optional<RmseInterval> IntervalOfRmse(const Eigen::MatrixXd& distances,
+                                           const std::vector<int>& unit_of);
 
 }  // namespace elastocal

@@ -276,6 +276,7 @@ CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorMo
   const ObservationMask judged = Judged(model, recording, folds.by);
   CrossValidation validation;
   validation.folds = folds.folds;
+  validation.unit_of = UnitOfPosture(recording, folds.unit);
   for (const FoldResult& result : results) validation.unconverged += result.unconverged;
   for (ModelKind kind : kinds) {
     const auto k = static_cast<int>(kind);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/calibration/prediction.hpp"
@@ -76,6 +77,7 @@ struct CrossValidation {
   /// could not be placed, or their cluster was knocked between the other folds' postures around.
   int not_predicted = 0;
   ByModel<Eigen::MatrixXd> distances;  ///< postures x markers, m; NaN where not counted
+  std::vector<int> unit_of;  ///< of each posture; those of a unit are much alike, or neighbours
 };
 
 /// What a fold is estimated from and judged on.

@@ -73,8 +73,11 @@ export function knownNames(report) {
 export function sentence(text, known = []) {
   const [first] = text.match(/^[a-z]+(?=[ ,:])/) ?? [''];
   const begun = first && !known.includes(first) ? text[0].toUpperCase() + text.slice(1) : text;
-  return /[.?!]$/.test(begun) ? begun : `${begun}.`;
+  return typeset(/[.?!]$/.test(begun) ? begun : `${begun}.`);
 }
+
+/** The program's '+-' and '-7.1' as they are printed: '±' and '−7.1'. */
+export const typeset = (text) => text.replaceAll('+-', '±').replace(/(^|[\s(])-(?=\d)/g, '$1−');
 
 /** {objections, remarks, warnings}, each text once: the warnings also have the remarks and the trials' findings. */
 export function spoken(summary) {

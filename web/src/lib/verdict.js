@@ -19,7 +19,9 @@ export function judgedErrors(summary) {
   const urdf = summary.deployed?.urdf;
   if (typeof urdf?.rmse_3d_mm === 'number' && typeof urdf?.uncalibrated === 'number') {
     const on = JUDGED_ON[summary.deployed.judged_on] ?? JUDGED_ON['the fit'];
-    return {before: urdf.uncalibrated, after: urdf.rmse_3d_mm, compensated: summary.deployed.compensated?.rmse_3d_mm, on, best: urdf.model};
+    const {compensated} = summary.deployed;
+    return {before: urdf.uncalibrated, after: urdf.rmse_3d_mm, compensated: compensated?.rmse_3d_mm, on, best: urdf.model,
+      interval: urdf.interval_95_mm, compensatedInterval: compensated?.interval_95_mm};
   }
   const best = bestModel(summary);
   const sources = [
@@ -80,12 +82,13 @@ export function verdict(summary, validation) {
     return {state: 'check', word: 'Validate before deploying', sentence: errors ? `Calibrated ${from}.` : 'Calibrated.',
       rest: `Nothing shows yet how well it predicts what it was not estimated from: cross-validate (--kfold 10), and validate on another recording. ${rest}`, errors};
   }
+  const sameRecording = errors?.on === JUDGED_ON['held-out postures'] && !another;
   const remarks = (summary.remarks ?? []).length > 0;
   return {
     state: remarks ? 'check' : 'deploy',
     word: remarks ? 'Deploy after a look at the remarks' : 'Deploy',
     sentence: errors ? `Calibrated ${from}.` : 'Calibrated.',
-    rest,
+    rest: sameRecording ? `Another day and other postures may show more: validate on another recording. ${rest}` : rest,
     errors,
   };
 }

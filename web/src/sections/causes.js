@@ -4,6 +4,7 @@ import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {figure} from '../lib/figure.js';
 import {prettyUnit, probability} from '../lib/format.js';
+import {typeset} from '../lib/groups.js';
 import {legend} from '../lib/legend.js';
 import {plot} from '../lib/plot.js';
 
@@ -34,7 +35,7 @@ function causePlot(picture) {
       series: SERIES,
       data: pictureColumns(picture),
     }),
-    h('p', {class: 'cause-words'}, `${picture.words}. p ${probability(picture.p_adjusted)}.`));
+    h('p', {class: 'cause-words'}, typeset(`${picture.words}. p ${probability(picture.p_adjusted)}.`)));
 }
 
 /** What the causes look like that were taken, or come nearest to it; null where none was looked for. */
@@ -42,7 +43,8 @@ export function causesFigure(report) {
   const own = report.diagnosis?.pictures;
   const pictures = (Array.isArray(own) ? own : report.summary.diagnosis_pictures ?? []).filter((picture) => picture.x?.length > 0);
   if (pictures.length === 0) return null;
-  return figure({title: 'What they look like', body: [legend(SERIES), h('div', {class: 'causes'}, ...pictures.map(causePlot))],
+  const found = pictures.some((picture) => picture.p_adjusted < 0.05);
+  return figure({title: found ? 'What they look like' : 'The likeliest of them, none of which is significant', body: [legend(SERIES), h('div', {class: 'causes'}, ...pictures.map(causePlot))],
     note: 'Each dot is a posture: the displacement that the cause has there, and what the residuals of that posture ask for beside it. Where the cause is real, the dots follow the curve. p is that of the score test, adjusted for all causes that were tried.',
     data: {name: 'causes.csv', text: () => toCsv(['cause', 'posture', 'variable', 'variable_unit', 'displacement', 'displacement_sd', 'displacement_unit'],
       pictures.flatMap((p) => p.x.map((x, i) => [p.name, p.postures[i], x, p.against_unit, p.y[i], p.sd[i], p.unit])))}});

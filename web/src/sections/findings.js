@@ -3,7 +3,7 @@ import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {figure, section} from '../lib/figure.js';
 import {count, fixed, list, plural, withSd} from '../lib/format.js';
-import {groupTexts, knownNames, othersOf, sentence, spoken} from '../lib/groups.js';
+import {groupTexts, knownNames, othersOf, sentence, spoken, typeset} from '../lib/groups.js';
 import {outlierRows, placeOf} from '../lib/outliers.js';
 import {table} from '../lib/table.js';
 import {causesFigure} from './causes.js';
@@ -27,7 +27,7 @@ function words(title, kind, items, names) {
 function causeWords(texts, names) {
   if (texts.length === 0) return null;
   return h('div', {class: 'words'}, h('h3', {}, 'What geometry and springs leave, and why'),
-    h('ul', {}, ...texts.map((text) => h('li', {}, text.endsWith(':') ? text : sentence(text.trim(), names)))));
+    h('ul', {}, ...texts.map((text) => h('li', {}, text.endsWith(':') ? typeset(text) : sentence(text.trim(), names)))));
 }
 
 function outlierFigure(report) {

@@ -3,7 +3,7 @@ import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
 import {choice, figure, section} from '../lib/figure.js';
 import {interval, significant, withSd} from '../lib/format.js';
-import {byJoint, family, kindsOf, STATUS_WORDS} from '../lib/parameters.js';
+import {byJoint, family, KINDS, kindsOf, splitName, STATUS_WORDS} from '../lib/parameters.js';
 import {table} from '../lib/table.js';
 import {stiffness, stiffnessInterval, userUnit} from '../lib/units.js';
 
@@ -64,15 +64,21 @@ function stiffnessCell(parameter) {
   return h('span', {title: `95 % interval: ${interval(...stiffnessInterval(parameter))} ${k.unit}`}, withSd(k.value, k.sd).value);
 }
 
+/** The unit of a value beside it, where the head of the column has another one: a slide among joints that turn. */
+const ownUnit = (unit, ofColumn) => unit && unit !== ofColumn ? h('span', {class: 'sd'}, ` ${unit}`) : null;
+
 /** Of the joints, or of the root link up to those on it. */
 function elasticTable(joints, shown, {root}) {
   const kinds = kindsOf(joints).filter(({kind}) => kind.startsWith('compliance') && kind.startsWith('compliance_root') === root);
+  const unit = 'µrad/(N·m)', inverse = 'N·m/rad';
   const columns = [{text: 'Joint'}, ...kinds.flatMap(({symbol, what}) => [
-    {text: h('abbr', {title: what}, symbol), unit: 'µrad/(N·m)', number: true},
-    {text: h('abbr', {title: `stiffness: inverse of the ${what}`}, symbol.replace('c', 'K')), unit: 'N·m/rad', number: true}])];
+    {text: h('abbr', {title: what}, symbol), unit, number: true},
+    {text: h('abbr', {title: `stiffness: inverse of the ${what}`}, symbol.replace('c', 'K')), unit: inverse, number: true}])];
+  const cells = (parameter) => parameter ? [[valueCell(parameter), ownUnit(userUnit(parameter.unit).unit, unit)],
+    [stiffnessCell(parameter), parameter.significant ? ownUnit(stiffness(parameter)?.unit, inverse) : null]] : ['', ''];
   const has = (parameters) => kinds.some(({kind}) => parameters.has(kind));
   const rows = [...joints].filter(([joint, parameters]) => shown(joint) && has(parameters)).map(([joint, parameters]) =>
-    [h('span', {title: joint}, pretty(joint)), ...kinds.flatMap(({kind}) => [valueCell(parameters.get(kind)), stiffnessCell(parameters.get(kind))])]);
+    [h('span', {title: joint}, pretty(joint)), ...kinds.flatMap(({kind}) => cells(parameters.get(kind)))]);
   if (rows.length === 0) return null;
   const caption = root ? 'Compliance and stiffness of the root link up to joints on it' : 'Compliance and stiffness of the joints';
   return table({caption, columns, rows, className: 'table1'});
@@ -119,6 +125,23 @@ function legsTable(legs) {
   });
 }
 
+/** A name that may go on in a second line before the kind, for narrow windows. */
+const breakable = (name) => h('span', {}, splitName(name).owner, h('wbr'), `.${splitName(name).kind}`);
+
+/** What the data asked for beside geometry and springs; null where that is nothing. */
+function causesTable(parameters, legNames) {
+  const causes = parameters.filter((p) => family(p, legNames) === 'joint' && !KINDS.some(({kind}) => kind === splitName(p.name).kind));
+  if (causes.length === 0) return null;
+  return figure({
+    title: 'Causes beyond geometry and springs',
+    note: 'A URDF has no place for them: “compensate” and the exported models at run time apply them.',
+    body: table({caption: 'Causes beyond geometry and springs', className: 'table1',
+      columns: [{text: 'Cause'}, {text: 'Estimate', number: true}],
+      rows: causes.map((p) => [breakable(p.name), [valueCell(p), h('span', {class: 'sd'}, ` ${userUnit(p.unit).unit}`)]])}),
+    data: {name: 'causes_estimated.csv', text: () => csv(causes)},
+  });
+}
+
 /** Waist and markers belong to the experiment, not to the robot: they are folded away. */
 function externals(parameters, legNames) {
   const rows = parameters.filter((p) => ['marker', 'waist'].includes(family(p, legNames)));
@@ -159,5 +182,5 @@ export function table1Section(report) {
       title: 'Elasticity',
       note: 'The compliance c says how far a joint gives way under load: c_z about its axis, c_x and c_y across it; c₀ how far the root link gives way up to a joint on it, about its own origin and axes. The inverse K of a compliance is the stiffness; it is shown where the 95 % interval of the compliance excludes a rigid joint.',
       body: holders[1].at, data: {name: 'elasticity.csv', text: () => csv(summary.parameters.filter((p) => /\.compliance_/.test(p.name)))},
-    }), legs.length > 0 && legsTable(legs), externals(summary.parameters, legNames));
+    }), causesTable(summary.parameters, legNames), legs.length > 0 && legsTable(legs), externals(summary.parameters, legNames));
 }

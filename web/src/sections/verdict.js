@@ -20,10 +20,14 @@ function linkToFindings(report) {
   return h('p', {class: 'verdict-link'}, h('a', {href: '#findings'}, `Read ${list(numbers.map(([n, word]) => plural(n, word)))}`));
 }
 
+/** Where the error of many such postures lies, after the words for it. */
+const withInterval = (words, ends) => ends ? `${words} (95 % interval for many such postures: ${fixed(ends[0])} to ${fixed(ends[1])})` : words;
+
 /** What a controller reaches that corrects elasticity as well; nothing where that is no other model. */
-function compensatedFact(errors) {
+function compensatedFact(errors, causes) {
   if (typeof errors?.compensated !== 'number' || errors.compensated === errors.after) return null;
-  return fact(fixed(errors.compensated), 'mm', 'the same with compensation of elasticity, of which a URDF has none');
+  const what = causes.length === 0 ? 'elasticity, of which a URDF has none' : `elasticity and ${plural(causes.length, 'other cause')}, which a URDF cannot carry`;
+  return fact(fixed(errors.compensated), 'mm', withInterval(`the same with compensation of ${what}`, errors.compensatedInterval));
 }
 
 const FIT = /themselves/;
@@ -34,8 +38,8 @@ function facts(summary, errors) {
   const outliers = (summary.outliers ?? []).length;
   return h('dl', {class: 'facts'},
     errors && fact([fixed(errors.before), h('span', {class: 'arrow', 'aria-label': 'to'}, ' → '),
-                    h('strong', {}, fixed(errors.after))], 'mm', `RMSE of the marker distances ${FIT.test(errors.on) ? 'on the data of the fit' : 'on held-out data'}`),
-    compensatedFact(errors),
+                    h('strong', {}, fixed(errors.after))], 'mm', withInterval(`RMSE of the marker distances ${FIT.test(errors.on) ? 'on the data of the fit' : 'on held-out data'}`, errors.interval)),
+    compensatedFact(errors, summary.extra ?? []),
     fact(count(counts.estimated ?? 0), held ? `of ${count((counts.estimated ?? 0) + held)}` : '', 'joint and leg errors estimated'),
     fact(count(summary.postures), '', `postures, ${plural(summary.markers, 'marker')}`),
     fact(significant(summary.marker_sd_mm, 2), 'mm', 'standard deviation of the noise of a marker coordinate'),

@@ -335,8 +335,33 @@ test('causes are shown with their curve, and the file of diagnose goes before th
   const other = await openPage(browser, file);
   assert.deepEqual(await other.page.$$eval('#findings .cause h4', (all) => all.map((h4) => h4.textContent)), ['waist.drift']);
   assert.ok((await other.page.textContent('#findings')).includes('None of 44 causes was found.'));
+  assert.ok((await other.page.textContent('#findings')).includes('1.2 ± 0.1 mrad'));
   assert.deepEqual(other.problems, []);
   await other.page.close();
+});
+
+test('a slide has its own units, causes have a table, and causes that were not found do not pass for found ones', async () => {
+  const report = sampleReport();
+  report.summary.parameters.push(
+    {name: 'lift_joint.compliance_z', unit: 'm/N', value: 2e-6, sd: 2e-7, status: 'estimated', significant: true},
+    {name: 'arm_1_joint.coupling_lift_joint', unit: 'rad/m', value: -0.0287, sd: 0.0069, status: 'estimated', significant: true});
+  report.summary.diagnosis_pictures = report.summary.diagnosis_pictures.map((picture) => ({...picture, p_adjusted: 0.3}));
+  report.summary.extra = ['arm_1_joint.coupling_lift_joint'];
+  report.summary.deployed = {judged_on: 'held-out postures', urdf: {rmse_3d_mm: 4.06, uncalibrated: 5.19, interval_95_mm: [2.9, 5.7], model: 'rigid'},
+    compensated: {rmse_3d_mm: 2.59, uncalibrated: 5.19, interval_95_mm: [1.7, 4]}};
+  const file = join(folder, 'slide.html');
+  writeFileSync(file, fill(readFileSync(template, 'utf8'), report));
+  const {page, problems} = await openPage(browser, file);
+  const row = await page.$eval('#parameters [data-parameter="lift_joint.compliance_z"]', (e) => e.closest('tr').textContent);
+  assert.match(row, /2\.00±0\.20 µm\/N500 N\/mm/);
+  const cause = await page.$eval('#parameters [data-parameter="arm_1_joint.coupling_lift_joint"]', (e) => e.closest('tr').textContent);
+  assert.match(cause, /−28\.7±6\.9 mrad\/m/);
+  assert.ok((await page.textContent('#findings')).includes('none of which is significant'));
+  const facts = await page.textContent('#verdict .facts');
+  assert.match(facts, /elasticity and 1 other cause, which a URDF cannot carry \(95 % interval for many such postures: 1\.70 to 4\.00\)/);
+  assert.match(await page.textContent('#verdict .verdict-rest'), /^Another day and other postures may show more/);
+  assert.deepEqual(problems, []);
+  await page.close();
 });
 
 test('a report with nothing but a summary says what is missing', async () => {

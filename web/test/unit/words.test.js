@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {count, fixed, flatten, interval, list, plural, probability, significant, tick, withSd} from '../../src/lib/format.js';
+import {typeset} from '../../src/lib/groups.js';
 import {bestModel, judgedErrors, undetermined, verdict} from '../../src/lib/verdict.js';
 
 const good = {
@@ -95,6 +96,19 @@ test('a sound calibration is to be deployed, and what could not be identified is
   assert.deepEqual(undetermined(good), ['b.alpha']);
   // Its value is in the URDF: it does not stay at nominal.
   assert.equal(result.rest, 'The recording hardly tells b.alpha: this parameter has its most probable value.');
+});
+
+test('postures that were left out are of the same recording, which the verdict says', () => {
+  const deployed = {judged_on: 'held-out postures', urdf: {rmse_3d_mm: 4, uncalibrated: 5, interval_95_mm: [3, 6]}, compensated: {rmse_3d_mm: 2, interval_95_mm: [1.5, 3]}};
+  const result = verdict({...good, deployed});
+  assert.match(result.rest, /^Another day and other postures may show more: validate on another recording\. The recording hardly/);
+  assert.deepEqual([result.errors.interval, result.errors.compensatedInterval], [[3, 6], [1.5, 3]]);
+  const validation = {status: 'better', own_recording: false, mistakes: [], rmse_3d_mm: {uncalibrated: 4, calibrated: 0.2, urdf: 0.5}};
+  assert.match(verdict({...good, deployed}, validation).rest, /^The recording hardly/);
+});
+
+test('signs of the program are printed as such', () => {
+  assert.equal(typeset('hysteresis of -7.1 +- 1.2 mrad (-3), by x-1 and --json'), 'hysteresis of −7.1 ± 1.2 mrad (−3), by x-1 and --json');
 });
 
 test('remarks ask for a look, objections forbid', () => {
