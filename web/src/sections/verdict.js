@@ -26,6 +26,14 @@ function compensatedFact(errors) {
   return fact(fixed(errors.compensated), 'mm', 'the same with compensation of elasticity, of which a URDF has none');
 }
 
+/** What no marker shows: how well the least known end of a limb is where the URDF has it. */
+function frameFact(frames) {
+  if (!frames?.length) return null;
+  const worst = frames.reduce((a, b) => b.position_sd_mm > a.position_sd_mm ? b : a);
+  return fact(significant(worst.position_sd_mm, 2), 'mm',
+    `error to be expected (sd) of the URDF between the root link and ${worst.link}, which fitted markers do not show`);
+}
+
 const FIT = /themselves/;
 
 function facts(summary, errors) {
@@ -36,6 +44,7 @@ function facts(summary, errors) {
     errors && fact([fixed(errors.before), h('span', {class: 'arrow', 'aria-label': 'to'}, ' → '),
                     h('strong', {}, fixed(errors.after))], 'mm', `RMSE of the marker distances ${FIT.test(errors.on) ? 'on the data of the fit' : 'on held-out data'}`),
     compensatedFact(errors),
+    frameFact(summary.frames),
     fact(count(counts.estimated ?? 0), held ? `of ${count((counts.estimated ?? 0) + held)}` : '', 'joint and leg errors estimated'),
     fact(count(summary.postures), '', `postures, ${plural(summary.markers, 'marker')}`),
     fact(significant(summary.marker_sd_mm, 2), 'mm', 'standard deviation of the noise of a marker coordinate'),
