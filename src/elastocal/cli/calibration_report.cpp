@@ -190,6 +190,21 @@ std::string ModelTable(const CalibrationRun& run) {
          table.Render();
 }
 
+/// What no error of markers shows: how far the ends of limbs may be from where the URDF has them.
+std::string FramesText(const CalibrationRun& run) {
+  if (run.frames.empty()) return "";
+  TextTable table({"end of a limb", "position mm", "attitude deg"});
+  for (const FramePrecision& frame : run.frames) {
+    const Link& link = run.comparison.largest().model.tree.links[Size(frame.link)];
+    table.Add({link.name, RoundedSd(1e3 * frame.position_sd),
+               RoundedSd(frame.attitude_sd * 180.0 / M_PI)});
+  }
+  return "\nError to be expected (sd) of the URDF between the root link and the ends of limbs, "
+         "springs aside.\nMarkers that are fitted do not show it; measured places of markers "
+         "(--marker-places) make it smaller.\n" +
+         table.Render();
+}
+
 /// Parameters of the robot that differ from nominal at 95 %, the furthest first: in units of what
 /// is usual for their kind, so that angles, lengths and compliances can stand in one order.
 std::vector<int> Remarkable(const CalibrationResult& result) {
@@ -288,8 +303,8 @@ std::string LookAt(const CalibrationRun& run) {
 
 std::string DescribeRun(const CalibrationRun& run, bool verbose) {
   const std::string screen = RefusedText(run) + VerdictText(run) + "\n" + Overview(run) +
-                             ModelTable(run) + ParametersText(run.comparison.largest()) +
-                             LookAt(run);
+                             ModelTable(run) + FramesText(run) +
+                             ParametersText(run.comparison.largest()) + LookAt(run);
   return screen + (verbose ? "\n" + DescribeDetails(run)
                            : "  all parameters, elasticity and correlations: --verbose\n");
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "elastocal/calibration/camera_scale.hpp"
+#include "elastocal/calibration/frame_precision.hpp"
 #include "elastocal/calibration/knocks.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/description/calibrated_urdf.hpp"
@@ -70,10 +71,11 @@ struct CalibrationRun {
   std::vector<std::string> decided_once;  ///< what its folds did not decide anew (DecidedOnce)
   std::vector<TrialSummary> trials;       ///< of recording folders: what was used of each trial
   std::vector<Knock> knocks;              ///< clusters that were knocked, and are taken as two
-  Recording validation;              ///< trials that took no part in the estimate; may be empty
-  std::optional<HeldOut> held_out;   ///< errors on them, where there are any
-  ByModel<double> waist_error = {};  ///< m, see WaistError; NaN where the truth is unknown
-  Deployment deployment;             ///< what a user takes home, and its error
+  Recording validation;                ///< trials that took no part in the estimate; may be empty
+  std::optional<HeldOut> held_out;     ///< errors on them, where there are any
+  ByModel<double> waist_error = {};    ///< m, see WaistError; NaN where the truth is unknown
+  Deployment deployment;               ///< what a user takes home, and its error
+  std::vector<FramePrecision> frames;  ///< of the ends of limbs, which no error of markers shows
   Verdict verdict;
   /// The robot description with the estimates in it; nothing where the verdict has objections.
   std::optional<CalibratedUrdf> urdf;

@@ -169,6 +169,17 @@ Json LegJson(const LegStiffness& leg) {
           {"stiffness", stiffness}, {"interval_95", interval}, {"known", known}};
 }
 
+/// How well the ends of limbs are known in the frame of the root link.
+void AddFrames(const CalibrationRun& run, Json& json) {
+  const RobotTree& tree = run.comparison.largest().model.tree;
+  json["frames"] = Json::array();
+  for (const FramePrecision& frame : run.frames) {
+    json["frames"].push_back({{"link", tree.links[static_cast<std::size_t>(frame.link)].name},
+                              {"position_sd_mm", Finite(1e3 * frame.position_sd)},
+                              {"attitude_sd_deg", Finite(frame.attitude_sd * 180.0 / M_PI)}});
+  }
+}
+
 /// The legs, and where a foot or a cluster moved that should not.
 void AddStance(const CalibrationRun& run, Json& json) {
   const CalibrationResult& result = run.comparison.largest();
@@ -370,6 +381,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   AddProblem(run, json);
   AddStatistics(run, json);
   AddErrors(run, json);
+  AddFrames(run, json);
   if (!run.trials.empty()) {
     AddTrials(run, json);
     AddHeldOut(run, json);

@@ -68,6 +68,11 @@ bool NeedsBeta(const Axis& a, const Axis& b, const PlacementOptions& options) {
   return (CommonNormal(a, b).end - b.point).norm() > options.longest_lever_m * sine;
 }
 
+/// Whether the joint of a body slides. Only the direction of its axis means something.
+bool Slides(const RobotTree& tree, int body) {
+  return body > 0 && tree.joints[body - 1].type == JointType::kPrismatic;
+}
+
 Transform Frame(const Vector3d& origin, const Vector3d& z, const Vector3d& x) {
   Transform T;
   T.linear().col(2) = z;
@@ -130,7 +135,8 @@ std::vector<JointPlacement> PlaceJoints(const RobotTree& tree, const PlacementOp
     JointPlacement& placement = placements[k];
     const bool continues = zero.main_child[parent] == static_cast<int>(k);
     const bool parallel = continues && NeedsBeta(zero.axes[parent - 1], axis, options);
-    placement.general = !continues || (parallel && Coaxial(outgoing[parent]));
+    placement.general =
+        !continues || (parallel && (Slides(tree, parent) || Coaxial(outgoing[parent])));
     placement.parallel = parallel && !placement.general;
 
     // The normals by which the chain arrives on this axis and leaves it again.

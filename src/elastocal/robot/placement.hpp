@@ -33,10 +33,13 @@ struct PlacementOptions {
 ///
 /// Eq. 1 alone has no displacement along y, so it cannot place the first joint after the waist or
 /// after a branch. It cannot place a joint either whose axis coincides with the one before it
-/// (within 2 cm): d covers only one of the two directions in which the axes can part. Such a joint
-/// is `general`: T_parent_pre is a constant frame on its axis with z at right angles to it, nominal
-/// alpha is 90 degrees and the other constants are zero. The six displacements are then along and
-/// about three orthogonal axes and never singular.
+/// (within 2 cm): d covers only one of the two directions in which the axes can part. Nor can it
+/// place a joint that is parallel to a sliding one before it, as arm and head of a robot with a
+/// lift are: where the sliding axis lies means nothing, so that a turn about it, which serves
+/// between parallel axes of rotation, would turn all that slides for a shift of one axis. Such a
+/// joint is `general`: T_parent_pre is a constant frame on its axis with z at right angles to it,
+/// nominal alpha is 90 degrees and the other constants are zero. The six displacements are then
+/// along and about three orthogonal axes and never singular.
 struct JointPlacement {
   bool general = false;
   bool parallel = false;  ///< the axis is (nearly) parallel to the one before it: beta is in use

@@ -113,6 +113,21 @@ TEST(Placement, TheSameAxisTwiceIsPlacedGenerally) {
   EXPECT_FALSE(PlaceJoints(TwoAxes(0.5, 0.0), {})[1].general);
 }
 
+// Head and arms of a robot with a lift: an axis that is displaced across its distance from the lift
+// is a displacement of this axis alone, not a turn of all that the lift carries.
+TEST(Placement, AnAxisParallelToALiftIsPlacedGenerally) {
+  const auto place = [](JointType lift, double inclined) {
+    RobotTree tree = MakeRoot();
+    const int link = AddJoint(tree, "lift", 0, Offset(-0.2, 0.0, 0.5), {0, 0, 1}, lift);
+    AddJoint(tree, "head", link, Offset(0.03, 0.0, 0.6), RotX(inclined).linear().col(2));
+    return PlaceJoints(tree, {})[1];
+  };
+  EXPECT_TRUE(place(JointType::kPrismatic, 0.0).general);
+  EXPECT_TRUE(place(JointType::kPrismatic, 0.1).general);
+  EXPECT_FALSE(place(JointType::kPrismatic, 1.0).general);
+  EXPECT_FALSE(place(JointType::kRevolute, 0.0).general);
+}
+
 TEST(Placement, TheFirstJointInTheFileContinuesTheChain) {
   const RobotTree tree = RailArm();
   const std::vector<JointPlacement> placements = PlaceJoints(tree, {});

@@ -30,6 +30,14 @@ function compensatedFact(errors, causes) {
   return fact(fixed(errors.compensated), 'mm', withInterval(`the same with compensation of ${what}`, errors.compensatedInterval));
 }
 
+/** What no marker shows: how well the least known end of a limb is where the URDF has it. */
+function frameFact(frames) {
+  if (!frames?.length) return null;
+  const worst = frames.reduce((a, b) => b.position_sd_mm > a.position_sd_mm ? b : a);
+  return fact(significant(worst.position_sd_mm, 2), 'mm',
+    `error to be expected (sd) of the URDF between the root link and ${worst.link}, which fitted markers do not show`);
+}
+
 const FIT = /themselves/;
 
 function facts(summary, errors) {
@@ -40,6 +48,7 @@ function facts(summary, errors) {
     errors && fact([fixed(errors.before), h('span', {class: 'arrow', 'aria-label': 'to'}, ' → '),
                     h('strong', {}, fixed(errors.after))], 'mm', withInterval(`RMSE of the marker distances ${FIT.test(errors.on) ? 'on the data of the fit' : 'on held-out data'}`, errors.interval)),
     compensatedFact(errors, summary.extra ?? []),
+    frameFact(summary.frames),
     fact(count(counts.estimated ?? 0), held ? `of ${count((counts.estimated ?? 0) + held)}` : '', 'joint and leg errors estimated'),
     fact(count(summary.postures), '', `postures, ${plural(summary.markers, 'marker')}`),
     fact(significant(summary.marker_sd_mm, 2), 'mm', 'standard deviation of the noise of a marker coordinate'),

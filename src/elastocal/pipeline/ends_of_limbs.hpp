@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "elastocal/project/project.hpp"
+
+namespace elastocal {
+
+/// The links at the ends of the project's chains (hands, feet, a camera) that joints move, each
+/// once, in the order of the chains.
+std::vector<int> EndsOfLimbs(const Project& project);
+
+}  // namespace elastocal
