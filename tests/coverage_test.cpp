@@ -9,7 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/frame_precision.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/robot/kinematics.hpp"
 #include "tests/standing_robot.hpp"
 
 namespace elastocal {
@@ -61,10 +63,58 @@ StandingRobot LegsAndArm(int postures) {
   return robot;
 }
 
+/// Errors of the ends of limbs beside those that were to be expected: sums of squares.
+struct Frames {
+  double position = 0.0, expected_position = 0.0, attitude = 0.0, expected_attitude = 0.0;
+
+  void operator+=(const Frames& other) {
+    position += other.position;
+    expected_position += other.expected_position;
+    attitude += other.attitude;
+    expected_attitude += other.expected_attitude;
+  }
+};
+
+std::vector<int> EndsOfLimbs(const StandingRobot& robot) {
+  std::vector<int> ends;
+  for (const SupportLeg& leg : robot.model.legs) ends.push_back(leg.link);
+  const int arm = FindChain(robot.project, "torso_arm_left");
+  ends.push_back(robot.project.chains[static_cast<std::size_t>(arm)].tip_link);
+  return ends;
+}
+
+Frames CompareFrames(const StandingRobot& robot, const Eigen::VectorXd& truth,
+                     const CalibrationResult& result, const Recording& recording) {
+  const std::vector<int> links = EndsOfLimbs(robot);
+  const auto from_root = [&](const Eigen::VectorXd& delta, int posture, int link) {
+    const Geometry geometry = ApplyErrors(robot.model, delta);
+    return Transform(WaistPose(geometry).inverse() *
+                     CalibratedLinkTransforms(robot.model, geometry,
+                                              recording.q.row(posture).transpose())[link]);
+  };
+  Frames frames;
+  for (const FramePrecision& frame : AssessFrames(result, recording, links)) {
+    constexpr int kEvery = 7;
+    int count = 0;
+    double position = 0.0, attitude = 0.0;
+    for (int i = 0; i < recording.posture_count(); i += kEvery, ++count) {
+      const Transform there = from_root(truth, i, frame.link);
+      const Transform here = from_root(result.delta, i, frame.link);
+      position += (there.translation() - here.translation()).squaredNorm();
+      attitude +=
+          std::pow(Eigen::AngleAxisd(there.linear().transpose() * here.linear()).angle(), 2);
+    }
+    frames += {position / count, std::pow(frame.position_sd, 2), attitude / count,
+               std::pow(frame.attitude_sd, 2)};
+  }
+  return frames;
+}
+
 /// Of the parameters of a robot's joints and legs, by what they are.
 struct Coverages {
   Coverage geometry, torsion, legs;
   Coverage unsupported;  ///< held at nominal: intervals around it
+  Frames frames;
   int unsettled = 0;
 
   void operator+=(const Coverages& other) {
@@ -72,6 +122,7 @@ struct Coverages {
     torsion += other.torsion;
     legs += other.legs;
     unsupported += other.unsupported;
+    frames += other.frames;
     unsettled += other.unsettled;
   }
 };
@@ -83,6 +134,7 @@ Coverages CalibrateOnce(const StandingRobot& robot, std::uint64_t seed) {
   const CalibrationResult result =
       Calibrate(robot.model, recording, robot.base, ModelKind::kFull, {});
   Coverages found;
+  found.frames = CompareFrames(robot, truth, result, recording);
   found.unsettled = result.termination == Termination::kConverged && result.settled ? 0 : 1;
   for (int i = 0; i < robot.model.parameter_count(); ++i) {
     const ParameterKind kind = robot.model.parameters[i].kind;
@@ -131,6 +183,13 @@ TEST(Coverage, NinetyFivePercentIntervalsHoldTheTruth) {
   Print("the joints' compliances", found.torsion);
   Print("the legs' compliances", found.legs);
   Print("parameters held for want of support", found.unsupported);
+  const Frames& frames = found.frames;
+  const double position = std::sqrt(frames.position / frames.expected_position);
+  const double attitude = std::sqrt(frames.attitude / frames.expected_attitude);
+  std::printf("errors of the ends of limbs over those to be expected: %.2f in place, %.2f turned\n",
+              position, attitude);
+  EXPECT_NEAR(position, 1.0, 0.15);
+  EXPECT_NEAR(attitude, 1.0, 0.15);
   EXPECT_EQ(found.unsettled, 0);
   for (const Coverage& coverage : {all, found.geometry, found.torsion, found.legs}) {
     EXPECT_GT(coverage.intervals, 4 * kSeeds);

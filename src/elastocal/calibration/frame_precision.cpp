@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-constexpr int kMostPostures = 20;  // spread over the recording: sizes change little with more
+constexpr int kPosturesAssessed = 20;  // spread over the recording: sizes change little with more
 
 /// Poses of the links in the frame of the root link.
 std::vector<Transform> PosesFromRoot(const ErrorModel& model, const Geometry& geometry,
@@ -23,7 +23,7 @@ std::vector<Transform> PosesFromRoot(const ErrorModel& model, const Geometry& ge
 
 std::vector<int> SomePostures(const Recording& recording) {
   const int count = recording.posture_count();
-  const int step = std::max(1, count / kMostPostures);
+  const int step = std::max(1, count / kPosturesAssessed);
   std::vector<int> postures;
   for (int i = 0; i < count; i += step) postures.push_back(i);
   return postures;
