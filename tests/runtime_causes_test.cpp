@@ -6,10 +6,18 @@
 #include <string>
 
 #include "elastocal/math/rotation_vector.hpp"
+#include "elastocal/robot/inverse_dynamics.hpp"
 #include "tests/runtime_fixture.hpp"
 
 namespace elastocal {
 namespace {
+
+/// What a model file keeps of a robot.
+Compensator ReadBack(const RuntimeModel& model) {
+  std::stringstream file;
+  WriteRuntimeModel(model, file);
+  return Compensator(ReadRuntimeModel(file, "file"));
+}
 
 // A head gives way to the arms on its trunk; a limb that is alone on its joints gives way to none.
 TEST_F(Runtime, OnlyShortLimbsBesideLongOnesYield) {
@@ -65,15 +73,9 @@ TEST_F(Runtime, AppliesWhatTheCalibrationFoundBesideGeometryAndSprings) {
   };
   ErrorModel heavier = robot_.model;
   Link& arm = heavier.tree.links[static_cast<std::size_t>(FindLink(tree, link))];
-  double mass = 0.0;
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (const Link& other : tree.links) {
-    if (other.body != elbow + 1) continue;
-    mass += other.mass;
-    moment += other.mass * (other.T_body_link * other.com);
-  }
-  const Eigen::Vector3d added = 0.4 * (arm.T_body_link.inverse() * Eigen::Vector3d(moment / mass)) -
-                                0.02 * Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d com = BodyInertias(tree)[static_cast<std::size_t>(elbow) + 1].com;
+  const Eigen::Vector3d added =
+      0.4 * (arm.T_body_link.inverse() * com) - 0.02 * Eigen::Vector3d::UnitY();
   arm.com = (arm.mass * arm.com + added) / (arm.mass + 0.4);
   arm.mass += 0.4;
   const JointLoads first = GravityLoads(heavier, geometry_, q, kGravity, 0);
@@ -92,9 +94,7 @@ TEST_F(Runtime, AppliesWhatTheCalibrationFoundBesideGeometryAndSprings) {
   // A command brings the hands to where the nominal robot has them.
   EXPECT_EQ(robot.Command(q, kNoTorque, 0), 0u);
   EXPECT_LT(robot.residual_m(), 1e-5);
-  std::stringstream file;
-  WriteRuntimeModel(robot.model(), file);
-  Compensator read(ReadRuntimeModel(file, "file"));
+  Compensator read = ReadBack(robot.model());
   read.Forward(q, kNoTorque, 0);
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_LT(Distance(read.link_pose(static_cast<int>(i)), expected[i]), 10.0 * kRounding);
@@ -106,9 +106,7 @@ TEST_F(Runtime, AppliesWhatTheCalibrationFoundBesideGeometryAndSprings) {
 TEST_F(Runtime, FollowsAJointThroughItsPlay) {
   Compensator plain = Make();
   stored_.joint_errors["arm_left_4_joint.hysteresis"] = -2e-3;
-  std::stringstream file;
-  WriteRuntimeModel(Make().model(), file);
-  Compensator robot(ReadRuntimeModel(file, "file"));
+  Compensator robot = ReadBack(Make().model());
   const auto elbow = static_cast<std::size_t>(FindJoint(project_.tree, "arm_left_4_joint"));
   const Eigen::Index at = project_.tree.joints[elbow].coordinate;
   const Eigen::VectorXd start = Posture(4);
@@ -161,9 +159,7 @@ TEST_F(Runtime, SinksAsTheCalibrationFoundItsSuspension) {
   EXPECT_GT(largest, 2e-4);
   EXPECT_EQ(robot.Command(q, kNoTorque, 0), 0u);
   EXPECT_LT(robot.residual_m(), 1e-5);
-  std::stringstream file;
-  WriteRuntimeModel(robot.model(), file);
-  Compensator read(ReadRuntimeModel(file, "file"));
+  Compensator read = ReadBack(robot.model());
   read.Forward(q, kNoTorque, 0);
   robot.Forward(q, kNoTorque, 0);
   EXPECT_TRUE(read.link_pose(9).isApprox(robot.link_pose(9), kRounding));

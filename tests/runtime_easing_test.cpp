@@ -166,16 +166,10 @@ TEST(RuntimeEasing, LimitsAreKept) {
 
 class RuntimeEasingTalos : public Runtime {};
 
-// The elbow to 6 degrees from straight and back, as in RuntimeFollowingTalos, at 100 calls a
-// second.
+// As in RuntimeFollowingTalos, at 100 calls a second.
 TEST_F(RuntimeEasingTalos, ANearlyStretchedArmMovesGently) {
   Compensator robot = Make();
-  const int elbow = FindJoint(project_.tree, "arm_right_4_joint");
-  const int c = project_.tree.joints[static_cast<std::size_t>(elbow)].coordinate;
-  std::vector<Eigen::VectorXd> plans(301, project_.motion.rest);
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    plans[i][c] = -0.1 - 0.45 * (1.0 + std::cos(2.0 * M_PI * static_cast<double>(i) / 300.0));
-  }
+  const std::vector<Eigen::VectorXd> plans = StretchOfElbow(300);
   robot.LimitChanges(Eigen::VectorXd::Constant(project_.motion.rest.size(), kSpeed));
   const Eased at_once = PlayEased(robot, plans, 0.0, 1);
   const Eased eased = PlayEased(robot, plans, kCalls, 1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -39,6 +40,19 @@ class Runtime : public testing::Test {
 
   Compensator Make(RuntimeContent content = RuntimeContent::kEverything) const {
     return Compensator(MakeRuntimeModel(project_, stored_, content));
+  }
+
+  /// The posture of rest, in which the right elbow opens to 6 degrees from straight and closes
+  /// again within so many steps.
+  std::vector<Eigen::VectorXd> StretchOfElbow(int steps) const {
+    const int elbow = FindJoint(project_.tree, "arm_right_4_joint");
+    const int c = project_.tree.joints[static_cast<std::size_t>(elbow)].coordinate;
+    std::vector<Eigen::VectorXd> plans;
+    for (int i = 0; i <= steps; ++i) {
+      plans.push_back(project_.motion.rest);
+      plans.back()[c] = -0.1 - 0.45 * (1.0 + std::cos(2.0 * M_PI * i / steps));
+    }
+    return plans;
   }
 
   /// A standing posture with other arms and legs.

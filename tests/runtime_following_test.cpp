@@ -197,12 +197,7 @@ class RuntimeFollowingTalos : public Runtime {};
 // would help by a millimetre or two, and the way from one to the other cost eight.
 TEST_F(RuntimeFollowingTalos, ANearlyStretchedArmKeepsItsSolution) {
   Compensator robot = Make();
-  const int elbow = FindJoint(project_.tree, "arm_right_4_joint");
-  const int c = project_.tree.joints[static_cast<std::size_t>(elbow)].coordinate;
-  std::vector<Eigen::VectorXd> plans(101, project_.motion.rest);
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    plans[i][c] = -0.1 - 0.45 * (1.0 + std::cos(0.02 * M_PI * static_cast<double>(i)));
-  }
+  const std::vector<Eigen::VectorXd> plans = StretchOfElbow(100);
   Played played;
   for (const Eigen::VectorXd& plan : plans) {
     robot.Command(plan, kNoTorque, 1);

@@ -74,13 +74,13 @@ struct CalibrationResult {
   LoadReport loads;                          ///< loads that were not measured
   std::vector<int> group;                    ///< noise group of each posture
   Noise noise;                               ///< by group; estimated unless given
-  /// Of one coordinate, over all groups, by all that markers do not share a posture's waist for:
-  /// noise of the cameras and displacement of the body, m.
+  /// Standard deviation of one coordinate of a marker, over all groups, m: noise of the cameras and
+  /// displacement of the body, without what all markers of a posture share through the waist.
   double marker_sd = 0.0;
   PriorScale prior_scale;  ///< factors by which the prior was widened
   int equations = 0;       ///< 3 a used observation
 
-  /// Of the last solve; and whether noise, prior and the verdict on outliers came to rest.
+  /// How the last solve ended, and whether noise, prior and the verdict on outliers came to rest.
   Termination termination = Termination::kFailure;
   bool settled = true;
   std::string message;
@@ -105,7 +105,7 @@ struct CalibrationResult {
 ///
 /// `base`: which parameters are held, and how many could be identified. `fixed`, where given, says
 /// which observations and constraints to use, instead of looking for outliers.
-/// Of trials, all are estimated together (eq. 14): see BodyResiduals.
+/// All trials are estimated together (eq. 14, see BodyResiduals).
 /// Throws InputError when there are fewer equations than parameters. Non-convergence is told by
 /// `termination`.
 CalibrationResult Calibrate(const ErrorModel& model, const Recording& recording,
@@ -122,7 +122,7 @@ CalibrationResult RefitExternals(const ErrorModel& model, const Recording& recor
                                  const Selection* fixed = nullptr);
 
 /// The geometry of a full model without its springs, waist and markers refitted to the observations
-/// in `fixed`: what is left when the estimate is used as a URDF. Of kind kRigid.
+/// in `fixed`: what is left when the estimate is used as a URDF. Its kind is kRigid.
 CalibrationResult WithoutSprings(const CalibrationResult& full, const ErrorModel& model,
                                  const Recording& recording, const BaseParameters& base,
                                  const CalibrationOptions& options, const Selection& fixed);

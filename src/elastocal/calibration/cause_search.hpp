@@ -23,7 +23,7 @@ struct CauseFinding {
   /// Root mean square of the displacement of markers by an effect that would have been found nine
   /// times in ten, as far as nothing else explains it, m; and that effect, SI (of one parameter).
   double visible = 0.0, visible_effect = 0.0;
-  /// Of one that was taken: causes that would have explained almost as much in its place.
+  /// If this cause was taken: those that would have explained almost as much in its place.
   std::vector<std::string> rivals = {};
 };
 

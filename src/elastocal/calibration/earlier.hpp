@@ -11,8 +11,8 @@
 namespace elastocal {
 
 /// What is known of a robot from an earlier calibration: a Gaussian on parameters of its joints and
-/// legs, in SI units. Of these parameters it takes the place of the prior around nominal, which it
-/// was made with.
+/// legs, in SI units. For these parameters it takes the place of the prior around nominal, which is
+/// contained in it.
 struct EarlierEstimate {
   std::vector<std::string> names;  ///< of the parameters, each once
   Eigen::VectorXd mean;            ///< deviations from nominal

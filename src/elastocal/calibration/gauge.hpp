@@ -17,8 +17,8 @@ namespace elastocal {
 /// are as much displaced (milliradians, millimetres).
 
 /// The errors that describe the same robot where the root link's frame is `T_root_new` in the one
-/// that it has with the errors `delta`. Of root joints whose axes the model has; the poses of the
-/// waist in postures are Placement's.
+/// that it has with the errors `delta`. Only root joints whose axes are in the model are rewritten;
+/// the poses of the waist in postures are Placement's.
 Eigen::VectorXd DisplaceRoot(const ErrorModel& model, const Eigen::VectorXd& delta,
                              const Transform& T_root_new);
 

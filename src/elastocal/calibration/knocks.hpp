@@ -17,8 +17,8 @@ namespace elastocal {
 /// one marker of it (FindMovedMarkers).
 struct Knock {
   std::string cluster;
-  /// Those seen on both sides of it, which become two (SplitMarkers). Of the recording, as split by
-  /// the knocks before this one.
+  /// Those seen on both sides of it, which become two (SplitMarkers): indices in the recording as
+  /// split by the knocks before this one.
   std::vector<int> markers;
   int posture = 0;            ///< the first one after it in which the cluster was seen
   int last_before = 0;        ///< the last one before it in which the cluster was seen

@@ -21,8 +21,8 @@ struct LinearStudy {
   struct Posture {
     Eigen::VectorXd residual;  ///< at the estimate
     Eigen::MatrixXd jacobian;  ///< rows x (base + corrections)
-    /// Of each row: its standard deviation, m. Of observations that are not markers: 1, so that
-    /// errors are in units of their noise.
+    /// Standard deviation of each row, m; 1 for observations that are not markers, so that errors
+    /// are in units of their noise.
     Eigen::VectorXd to_metres;
     int markers = 0;  ///< seen; of other observations, rows
   };

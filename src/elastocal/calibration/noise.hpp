@@ -30,8 +30,8 @@ struct Autocorrelation {
   double samples_each = 1.0;  ///< so many moments tell as much as one posture by itself
 };
 
-/// Of what bodies share, and of what the constraint of the standing foot (eq. 14) leaves
-/// (FindMotionCorrelation).
+/// How errors of neighbouring moments are correlated: those that the markers of a body share, and
+/// what the constraint of the standing foot (eq. 14) leaves (FindMotionCorrelation).
 struct MotionCorrelation {
   Autocorrelation bodies;
   Autocorrelation waist;

@@ -27,8 +27,8 @@ struct OddPostures {
 /// joint, as the markers tell it. The one that explains most of them (to less than half of the
 /// distance, in three postures at least and in 0.6 of those far off), and then the one that
 /// explains most of the others; empty where none does. A suspicion is no proof. Empty for a free
-/// root and for recordings of trials. Of a robot with `errors` that are known, 0.5 mm take the
-/// place of 15 mm.
+/// root and for recordings of trials. If the `errors` of the robot are known, 0.5 mm take the place
+/// of 15 mm.
 std::vector<OddPostures> FindOddPostures(const ErrorModel& model, const Recording& recording,
                                          const std::vector<LabelCluster>& clusters,
                                          const Eigen::VectorXd* errors = nullptr);

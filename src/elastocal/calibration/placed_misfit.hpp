@@ -19,9 +19,9 @@ double TypicalDistance(const std::vector<std::vector<double>>& by_marker);
 
 /// How far the markers of a posture table typically are from those of the nominal robot once its
 /// root link (a free one in each posture) and each marker on its link are where they fit best, m
-/// (TypicalDistance). Errors of a robot leave millimetres;
-/// nothing is estimated of them, so that a mistake in the table is not taken for one. Of a long
-/// table some postures are taken, evenly spread. 0 without markers.
+/// (TypicalDistance). Errors of a robot leave millimetres; they are not estimated, so that a
+/// mistake in the table is not taken for one of them. In a long table, evenly spread postures stand
+/// for all. 0 without markers.
 double PlacedMisfit(const ErrorModel& model, const Recording& recording);
 
 /// The nominal robot where the markers of a posture table have it.

@@ -18,8 +18,8 @@ struct DraftedSole {
   Transform T_parent_sole = Transform::Identity();
   Eigen::Vector2d lower = Eigen::Vector2d::Zero();  ///< corner of least x and y, m
   Eigen::Vector2d upper = Eigen::Vector2d::Zero();
-  /// Of a foot that is a ball, m: of a leg with too few joints to lay a sole flat. Its corners are
-  /// 0.
+  /// m; only of a foot that is a ball, because its leg has too few joints to lay a sole flat. Its
+  /// corners are 0.
   std::optional<double> ball_radius = {};
   bool guessed_size = false;    ///< no shape says how large the sole is
   bool guessed_height = false;  ///< nor a link where it is

@@ -27,18 +27,18 @@ struct ExportOptions {
   double least_significance = 0.0;
   std::string version;              ///< of the program, for comments
   std::filesystem::path mjcf = {};  ///< the nominal model that format mjcf changes
-  /// Of these joints, only those are exported that gain more than this on data that the calibration
-  /// has not seen (FindHeldOutGains, of what the format carries), m; the others stay nominal.
+  /// Only joints are exported that gain more than this on data that the calibration has not seen, m
+  /// (FindHeldOutGains, for what the format carries); the others stay nominal.
   std::optional<double> least_gain = {};
   /// Joints that are called otherwise there (ReadMjcfJointNames).
   std::vector<std::string> mjcf_joints = {};
   /// The file that the text is for: an MJCF finds its meshes from there.
   std::filesystem::path output = {};
   bool mjcf_springs = false;  ///< of format mjcf: with springs in series with the joints
-  /// Of rigid formats: with the geometry of the elastic model (that of c99 and runtime), for
-  /// programs that correct elasticity themselves. Without, that of the URDF by calibrate.
+  /// For rigid formats: with the geometry of the elastic model (that of c99 and runtime), for
+  /// programs that correct elasticity themselves; else with that of the URDF of `calibrate`.
   bool beside_springs = false;
-  /// Of format flex_joints: damping of the hips, N.m.s/rad; no calibration tells it.
+  /// For format flex_joints: damping of the hips, N.m.s/rad; no calibration tells it.
   std::optional<double> hip_damping = {};
 };
 

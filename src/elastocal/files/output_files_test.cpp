@@ -2,11 +2,11 @@
 #include "elastocal/files/output_files.hpp"
 
 #include <fstream>
-#include <iterator>
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "tests/count_in.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 
@@ -19,10 +19,6 @@ class OutputFiles : public testing::Test {
  protected:
   const ScratchFolder scratch_;
   const fs::path folder_ = scratch_.path() / "folder";
-
-  static auto CountIn(const fs::path& folder) {
-    return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
-  }
 };
 
 TEST_F(OutputFiles, WritesWhatItReadsAndNothingElse) {

@@ -3,7 +3,6 @@
 
 #include <csignal>
 #include <fstream>
-#include <iterator>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -12,6 +11,7 @@
 #include <unistd.h>
 
 #include "elastocal/files/output_files.hpp"
+#include "tests/count_in.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 
@@ -24,10 +24,6 @@ class OutputSetTest : public testing::Test {
  protected:
   const ScratchFolder scratch_;
   const fs::path folder_ = scratch_.path() / "folder";
-
-  static auto CountIn(const fs::path& folder) {
-    return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
-  }
 };
 
 TEST_F(OutputSetTest, NothingIsVisibleBeforePublishing) {

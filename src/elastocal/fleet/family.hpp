@@ -76,8 +76,8 @@ std::vector<FleetMember> LastSessions(const std::vector<FleetMember>& members);
 /// The fleet as the prior of the next robot (empirical Bayes): mean of the estimates, and the
 /// covariance mean(S_r) + D of one step of expectation maximisation over N(mean, covariance), with
 /// D the scatter of the estimates, of each parameter by itself and drawn towards that of its kind
-/// as if of `kind_robots` more robots. Of the parameters that all have. At least three robots
-/// (InputError).
+/// as if of `kind_robots` more robots. It has the parameters that all robots have. At least
+/// three robots (InputError).
 CalibrationEstimate FleetPrior(const std::vector<FleetMember>& robots, double kind_robots = 4.0);
 
 }  // namespace elastocal

@@ -32,7 +32,7 @@ JointLog ReadJointFile(const std::filesystem::path& file, const ReaderOptions& o
                        const Project& project);
 
 /// Reads a file of any of these formats, or the program's own (Qualisys TSV, joint log as CSV), by
-/// itself: without a project, under the names of the file. Of a CSV, every column but the time
+/// itself: without a project, under the names of the file. In a CSV, every column but the time
 /// (FindTime) is a joint's, unless it is a table of postures or of something else
 /// (ReadNamedPostures, ReadColumnsAsTheyAre), of which `postures` tells.
 /// RecordingFile::up is "z" for a Qualisys TSV, by custom.

@@ -12,7 +12,7 @@ namespace elastocal {
 struct PriorityQrResult {
   /// Kept and dropped columns, each in ascending order; together all columns.
   std::vector<int> kept, dropped;
-  /// kept x dropped: A(:, dropped) = A(:, kept) * regrouping. Of x, the matrix therefore determines
+  /// kept x dropped: A(:, dropped) = A(:, kept) * regrouping. Therefore A x determines only
   /// the combination x(kept) + regrouping * x(dropped).
   Eigen::MatrixXd regrouping;
   /// Norm of what is left of each column after projection on the kept columns before it, relative

@@ -16,9 +16,9 @@ struct ClockMistake {
   double peak = 0.0;    ///< correlation of the speeds once that is undone
 };
 
-/// Of a trial whose clock cannot be told: the rate (0.5, 2, or within a fifth of 1) or the one jump
-/// of the log's clock that lets its speeds correlate, far better than `peak`, that of the log as it
-/// is. A rate comes before a jump.
+/// What is wrong with the log's clock in a trial whose clock cannot be told: the rate (0.5, 2, or
+/// within a fifth of 1) or the one jump with which speeds correlate far better than with the log as
+/// it is (`peak`). A rate comes before a jump.
 std::optional<ClockMistake> FindClockMistake(const MeanSpeeds& speeds, double peak);
 
 /// "if the log's clock ran 5.3 % slow, the log fits (correlation 0.97): rows may be missing, or its

@@ -17,16 +17,15 @@ struct LogMistake {
   double frozen_from_s = 0.0, frozen_to_s = 0.0;  ///< of the robot's time; equal: it is not
 };
 
-/// Of a trial whose clock cannot be told: the reversed sign of one joint, or exchange of two, that
-/// lets it be told when undone, with the best correlation: one that is far better than `peak`, that
-/// of the log as it is (a quarter of what it lacks to 1). Speeds alone do not tell which of two
-/// joints with parallel axes turns the other way: of several such mistakes it is the one with which
-/// the positions in `trajectories` leave least. Or a joint that is logged in exactly
-/// the same place for two seconds or more, in which others move by half a radian, while the rest of
-/// the log tells the clock as well, by which that part is not what the cameras saw (joints that are
-/// moved one after the other stand still for long). `speeds` and `logged` as for
-/// EstimateTrialClock, `markers` to `coordinates` as for PredictSpeeds. Joints that hardly move are
-/// passed over.
+/// What is wrong with a log whose clock cannot be told: the reversed sign of one joint, or exchange
+/// of two. Undone, it lets the clock be told, with the best correlation, which must be far better
+/// than `peak`, that of the log as it is (a quarter of what it lacks to 1). Speeds do not tell
+/// which of two joints with parallel axes turns the other way; the positions in `trajectories` do,
+/// which must leave least. Or it is a joint that is logged in exactly the same place for two
+/// seconds or more, in which others move by half a radian, while the rest of the log tells the
+/// clock as well, by which that part is not what the cameras saw (joints that are moved one after
+/// the other stand still for long). `speeds` and `logged` as for EstimateTrialClock, `markers` to
+/// `coordinates` as for PredictSpeeds. Joints that hardly move are passed over.
 std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::vector<int>& markers,
                                          const std::vector<int>& standing, const SmoothedLog& log,
                                          const std::vector<int>& coordinates,

@@ -23,9 +23,9 @@ struct TimedTrial {
 /// For each posture, the frames whose mean it is, ascending.
 using PostureFrames = std::vector<std::vector<int>>;
 
-/// One posture for each rest. A marker with a noisy speed can break a rest into two runs. Of runs
-/// between which no joint moved (by more than 2 mrad or 2 mm), only the one in which most markers
-/// are seen is used. The log must cover the runs.
+/// One posture for each rest. A marker with a noisy speed can break a rest into several runs,
+/// between which no joint moves (by more than 2 mrad or 2 mm). Only the run in which most markers
+/// are seen is then used. The log must cover the runs.
 PostureFrames RestPostures(const TimedTrial& trial, const StableSamples& rests);
 
 /// One frame for each posture, about `rate_hz` times a second, from the first frame in motion to

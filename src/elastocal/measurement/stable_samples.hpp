@@ -77,8 +77,8 @@ double EstimateRestingSpeed(const Eigen::MatrixXd& speeds, const std::vector<int
                             double rate_hz, double window_s);
 
 /// Finds runs of frames in which all visible ones of `markers` are slower than a threshold for at
-/// least `hold_s`. Of each run it takes as samples `samples_per_run` equally spaced frames (one:
-/// the middle frame; more than the run has: all frames), among the frames of the run in which most
+/// least `hold_s`. The samples of a run are `samples_per_run` equally spaced frames (one: the
+/// middle frame; more than the run has: all frames), among the frames of the run in which most
 /// of the markers are seen. The samples are the same for all markers, so that no marker weighs more
 /// than another.
 ///

@@ -7,8 +7,8 @@
 
 namespace elastocal {
 
-/// Motions are sampled far more densely than postures are held, of which each counts: all of these,
-/// and at most so many moments of motions, evenly. Of a table, as EvenlyThinned.
+/// All postures that are held, and at most so many moments of motions, evenly: motions are sampled
+/// far more densely, so that fewer moments tell as much. A table is thinned by EvenlyThinned.
 Recording WithThinnedMotions(const Recording& recording, int most);
 
 /// Postures by which a correction of a recording can be tried before all of them are: those of rest

@@ -21,9 +21,9 @@ struct LoggedSpeeds {
 /// Speeds of the markers `markers` relative to the links `standing`, by nominal forward kinematics
 /// of the logged joint positions `log` (whose columns are the coordinates `coordinates`), about
 /// `rate_hz` times a second. If these are at rest in the laboratory, cameras see the same speeds,
-/// whatever their frame. Of one or two links, the first does not move; of three and more, their
-/// origins do not, as far as nominal kinematics allows: feet that are balls roll, and what is above
-/// them turns about their centres.
+/// whatever their frame. If one or two links stand, the first does not move. If three or more do,
+/// their origins do not, as far as nominal kinematics allows: feet that are balls roll, and what is
+/// above them turns about their centres.
 LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& markers,
                            const std::vector<int>& standing, const SmoothedLog& log,
                            const std::vector<int>& coordinates, double rate_hz);

@@ -34,9 +34,9 @@ Recording Mirrored(Recording recording);
 /// moves, in each posture), is far from the markers and much nearer to those of the opposite hand.
 bool LooksMirrored(const ErrorModel& nominal, const Recording& recording, double far);
 
-/// Of all pairs of mistakes of the log (PossibleLogMistakes; of many joints, signs alone) the one
-/// that leaves the least `misfit`, one beside the other. Neither need show by itself, and three
-/// columns that went round are two exchanges. Empty where there is none, or too many.
+/// The pair of mistakes of the log that leaves the least `misfit`, from all pairs
+/// (PossibleLogMistakes; with many joints only signs). Neither need show by itself, and three
+/// columns that went round are two exchanges. Empty where there is no pair, or too many.
 std::vector<LogAlternative> BestPair(const Recording& recording, const RobotTree& tree,
                                      const std::function<double(const Recording&)>& misfit);
 

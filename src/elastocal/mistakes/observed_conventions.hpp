@@ -16,7 +16,7 @@ struct WrittenConvention {
   std::string family;   ///< what it is if others of the family explain as much; empty: none
   Observations undone;  ///< rewritten in the convention of the tables
   bool turns_mountings = false;  ///< fits by mountings that are turned far, at least in part
-  /// Of a convention of the project: the robot in the right one; `undone` is as it was.
+  /// Where the project has the wrong convention: the robot in the right one; `undone` is unchanged.
   std::optional<ObservedRobot> robot = {};
 };
 

@@ -13,9 +13,9 @@ std::string DescribeWithRemedy(const ObservationFault& fault, const ObservedRobo
                                const Observations& observations);
 
 /// A fault of the tables that the estimate nearly explains (FindObservationFaults,
-/// FindObservedScale), in a sentence with what undoes it; empty where there is none. Of the faults
-/// that explain most of what is left, it is the one without which a fit leaves least: less than
-/// half. A scale is told by the lengths of the robot instead.
+/// FindObservedScale), in a sentence with what undoes it; empty where there is none. The faults
+/// that explain most of what is left are undone in turn, and the one whose fit leaves least is
+/// taken if that is less than half. A scale is told by the lengths of the robot instead.
 std::string FindObservedFault(const ObservedRobot& model, const Observations& observations,
                               const ObservationFit& fit);
 

@@ -24,8 +24,8 @@ struct ObservedMisfit {
   double turned = 0.0;
 };
 
-/// Of some of the postures, evenly spread, once the robot is placed; infinite where it cannot be,
-/// and of fewer than kFewestRowsTried.
+/// The misfit in some of the postures, evenly spread, once the nominal robot is placed; infinite
+/// where it cannot be placed, and with fewer rows than kFewestRowsTried.
 ObservedMisfit MisfitOfNominal(const ObservedRobot& model, const Observations& all);
 
 }  // namespace elastocal

@@ -48,7 +48,7 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result);
 
-/// Of a recording with this error, m.
+/// What else to suspect in a recording with this error, m.
 using FurtherSuspicions = std::function<std::vector<LogSuspicion>(const Recording&, double error)>;
 
 /// The same by any figure of how well a recording is explained, m: `error_of`, infinite where it is

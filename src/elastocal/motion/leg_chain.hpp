@@ -42,9 +42,9 @@ class LegChain {
   /// Pose of the sole in the root link's frame.
   Transform SolePose(const Eigen::VectorXd& q) const;
 
-  /// Of the many postures of a leg with spare joints that have the same pose of the sole,
-  /// `Place` takes from now on the one that differs from `q` only by what moves the sole (as seen
-  /// at `q`). It depends on the pose alone then, not on the way to it. Other legs are left as they
+  /// A leg with spare joints has many postures with the same pose of the sole. `Place` takes from
+  /// now on the one that differs from `q` only by what moves the sole (as seen at `q`). It then
+  /// depends on the pose alone, not on the way to it. Legs without spare joints are left as they
   /// are.
   void Prefer(const Eigen::VectorXd& q);
 

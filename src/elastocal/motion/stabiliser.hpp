@@ -49,7 +49,7 @@ struct StabiliserOptions {
 ///   centres of pressure at like points (a foot on its edge lets the robot rock, and its centre of
 ///   pressure no longer tells where the weight is),
 /// - shifts the root link until the zero-moment point is where the planned centre of mass is.
-/// Of more than two feet only the last is done with the feet, and balls cannot be turned.
+/// With more than two feet it only does the last, with the feet, and balls cannot be turned.
 /// Turn and shift are learned for each foot by its planned share of the weight, because every leg
 /// has errors of its own: what it learned on a foot is used again when the weight comes back.
 /// It knows the robot by its description, without errors and elasticity, and takes planned

@@ -93,7 +93,7 @@ Transform RootOverFeet(const StandingRobot& robot, const std::vector<int>& feet,
                        const Eigen::VectorXd& q);
 
 /// The same where the robot stands on all feet or on the fewest: those that stand are where they
-/// are on the floor, and no foot is below it. Of a held robot, where it is held.
+/// are on the floor, and no foot is below it. A held robot is where it is held.
 Transform RootOnFloor(const StandingRobot& robot, const Eigen::VectorXd& q);
 
 /// Starting from `pose`, moves the root link horizontally until the centre of mass is over `com`,
@@ -102,9 +102,9 @@ Transform RootOnFloor(const StandingRobot& robot, const Eigen::VectorXd& q);
 bool BalanceAtRest(const StandingRobot& robot, const std::vector<int>& feet,
                    const Eigen::Vector2d& com, PlacedPosture& pose);
 
-/// Places the legs of `feet` so that their soles stand where they stand on the floor. Of legs with
-/// too few joints of their own (see LegChain::turns_root), the first turns the root link about the
-/// vertical, and the joint that they share is moved until the second has its heading too. Returns
+/// Places the legs of `feet` so that their soles stand where they stand on the floor. If legs
+/// have too few joints of their own (see LegChain::turns_root), the first turns the root link about
+/// the vertical, and the joint that they share moves until the second has its heading too. Returns
 /// false, with the pose changed, if a foot is out of reach.
 bool PlaceFeet(const StandingRobot& robot, const std::vector<int>& feet, PlacedPosture& pose);
 

@@ -23,7 +23,7 @@ std::vector<ObservationFault> FindObservationFaults(const ObservedRobot& model,
 
 /// The fault with its size refined, by what is left of it beside a fit without it: the score test
 /// tells it to first order. The standard deviation stays: that of a fit without the fault does not
-/// know what the model lacks. Of frozen positions and what was moved, nothing changes.
+/// know what the model lacks. Frozen positions and what was moved stay as they are.
 ObservationFault Refined(ObservationFault fault, const ObservedRobot& model,
                          const Observations& observations);
 

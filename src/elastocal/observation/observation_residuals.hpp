@@ -43,8 +43,8 @@ class ObservationResiduals : public LeastSquaresProblem {
   /// Value of one in each entry of x, SI.
   const Eigen::VectorXd& scale() const { return scale_; }
 
-  /// Of each row of a residual block (the first blocks are the observations), its source; none of
-  /// the block of an earlier calibration.
+  /// The source of each row of a residual block (the first blocks are the observations); the block
+  /// of an earlier calibration has none.
   const std::vector<int>& Sources(int block) const { return sources_[block]; }
   /// What the priors say of the robot's entries of x, which are the first ones: their information.
   Eigen::MatrixXd RobotPriorInformation() const;

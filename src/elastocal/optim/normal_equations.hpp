@@ -24,8 +24,8 @@ struct ExplainedRows {
 /// well. The one linearisation that steps, uncertainty, variances and tests are made from.
 class NormalEquations {
  public:
-  /// Of a problem that has just been evaluated with jacobians. Keeps a reference; what is said of
-  /// single residual blocks is read from the problem, which must not be evaluated elsewhere before.
+  /// The problem must just have been evaluated with jacobians. Keeps a reference: residual blocks
+  /// are read from the problem later, so it must not be evaluated elsewhere in between.
   explicit NormalEquations(const LeastSquaresProblem& problem);
 
   const std::vector<int>& unknowns() const { return unknowns_; }       ///< entries of x, ascending
@@ -76,9 +76,9 @@ class NormalEquations {
     double variance = 0.0;  ///< of it, where residuals have unit variance
     double gain = 0.0;      ///< by which the sum of squares would fall
   };
-  /// Of unknowns that are tried one by one. The derivative of the residuals by each is the same
-  /// one, `derivative` (by block), times a factor of its own in every cluster of residual blocks:
-  /// `factors`, clusters x unknowns tried. Clusters are those of Scores.
+  /// What each of several further unknowns would bring, tried one by one. The derivative of the
+  /// residuals by each is `derivative` (by block), times a factor of its own in every cluster of
+  /// residual blocks: `factors`, clusters x unknowns tried. Clusters are those of Scores.
   std::vector<Addition> Add(const std::vector<Eigen::VectorXd>& derivative,
                             const std::vector<int>& cluster, const Eigen::MatrixXd& factors,
                             const Eigen::MatrixXd& covariance) const;

@@ -21,7 +21,7 @@ enum class CauseVariable {
 };
 
 /// What a cause looks like: displacement of the joint (or of the root link, or of a marker) against
-/// what drives it. Of a cause that loads joints, it is the deflection of the joint that gives way
+/// what drives it. If the cause loads joints, it is the deflection of the joint that gives way
 /// most. The points are partial residuals (Larsen and McCleary 1972): the displacement that the
 /// cause has in a posture, and what that posture's own residuals ask for beside it.
 struct CausePicture {

@@ -18,6 +18,7 @@
 #include "elastocal/pipeline/check_json.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
+#include "elastocal/tables/json_text.hpp"
 #include "elastocal/validation/deployment.hpp"
 
 namespace elastocal {
@@ -186,7 +187,7 @@ std::string MakeCheckJson(const CheckRun& run) {
   json["mistakes"] = run.mistakes;
   json["alternatives"] = run.alternatives;
   json["warnings"] = run.warnings;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

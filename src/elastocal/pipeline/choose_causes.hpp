@@ -68,7 +68,7 @@ std::vector<std::string> StoredCauses(const RobotTree& tree,
 /// plain.) Nothing where every cause is significant.
 std::optional<std::string> IdleCause(const CalibrationResult& result);
 
-/// Of these causes, those that neither an export nor `compensate` applies, because they depend on
+/// Those of these causes that neither an export nor `compensate` applies, because they depend on
 /// more than positions and loads.
 std::vector<std::string> NeverApplied(const std::vector<std::string>& causes);
 

@@ -23,10 +23,12 @@
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/check_json.hpp"
 #include "elastocal/pipeline/contact_earlier.hpp"
+#include "elastocal/pipeline/contact_figures.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
-#include "elastocal/pipeline/contact_verdict.hpp"
+#include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/leave_out_touches.hpp"
+#include "elastocal/tables/json_text.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -349,7 +351,7 @@ std::string MakeCheckJson(const ContactCheck& run) {
   json["mistakes"] = run.mistakes;
   json["alternatives"] = run.alternatives;
   json["warnings"] = run.warnings;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

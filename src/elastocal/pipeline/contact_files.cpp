@@ -11,6 +11,7 @@
 #include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/diagnose.hpp"
 #include "elastocal/pipeline/robot_views.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -62,7 +63,7 @@ std::string MakeContactSummary(const ContactRun& run) {
   }
   json["iterations"] = run.result.iterations;
   json["warnings"] = run.warnings;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 std::map<std::string, std::string> MakeContactFiles(const Project& project, ContactRun& run) {

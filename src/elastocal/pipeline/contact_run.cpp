@@ -14,6 +14,7 @@
 #include "elastocal/mistakes/observed_mistakes.hpp"
 #include "elastocal/observation/contact_result.hpp"
 #include "elastocal/observation/observed_study.hpp"
+#include "elastocal/pipeline/contact_figures.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
 #include "elastocal/pipeline/contact_verdict.hpp"
 #include "elastocal/pipeline/leave_out_touches.hpp"

@@ -17,10 +17,11 @@
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/contact_earlier.hpp"
+#include "elastocal/pipeline/contact_figures.hpp"
 #include "elastocal/pipeline/contact_json.hpp"
-#include "elastocal/pipeline/contact_verdict.hpp"
 #include "elastocal/pipeline/leave_out_touches.hpp"
 #include "elastocal/pipeline/off_alone.hpp"
+#include "elastocal/tables/json_text.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -172,7 +173,7 @@ std::string MakeContactValidationJson(const ContactValidation& run) {
   json["contact"]["uncalibrated"] = FiguresJson(run.model, run.uncalibrated);
   json["contact"]["gain_in_sds"] = run.gain_in_sds;
   json["warnings"] = run.warnings;
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

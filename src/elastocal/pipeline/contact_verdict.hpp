@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "elastocal/pipeline/contact_run.hpp"
 
@@ -18,14 +17,5 @@ void JudgeContacts(ContactRun& run);
 /// What the errors of the run hold with, where they are not those of its geometry alone
 /// (CompensationInWords).
 std::string CompensationOf(const ContactRun& run);
-
-/// Kinds of observations that the calibrated robot predicts by a quarter worse than the
-/// uncalibrated one, and by more than a tenth of LargestError, which may be noise: "height of lt
-/// from 101 to 251 mm".
-std::vector<std::string> WorseRows(const ObservedRobot& model, const ObservationFigures& before,
-                                   const ObservationFigures& after);
-
-/// Kinds of observations that are off by more: "height of lt off by 101 mm".
-std::vector<std::string> LargeErrors(const ObservedRobot& model, const ObservationFigures& figures);
 
 }  // namespace elastocal

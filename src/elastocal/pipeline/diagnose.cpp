@@ -16,6 +16,7 @@
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/known_places.hpp"
 #include "elastocal/recorded/choose_elasticity.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -294,7 +295,7 @@ std::string MakeDiagnosisJson(const Diagnosis& diagnosis) {
   for (const CauseFinding& finding : search.findings) {
     json["candidates"].push_back(CandidateJson(diagnosis.report, finding));
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

@@ -67,8 +67,8 @@ EarlierEstimate MostProbable(const JointCheck& check, const CalibrationResult& e
                              const std::function<EarlierEstimate(double days)>& after,
                              const Prior& prior);
 
-/// MostProbable for the earlier calibration of `fit`. Of its markers, those are known that stayed
-/// and that cannot have moved in place of a joint.
+/// MostProbable for the earlier calibration of `fit`. It knows the markers that stayed where they
+/// were and cannot have moved in place of a joint.
 EarlierEstimate KnownAfter(const EarlierFit& fit, double days, const CalibrationOptions& options);
 
 /// A sentence for each joint whose earlier estimate does not count any more. `source`: the earlier

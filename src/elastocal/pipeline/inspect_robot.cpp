@@ -11,6 +11,7 @@
 #include "elastocal/robot/special_geometry.hpp"
 #include "elastocal/robot/statics.hpp"
 #include "elastocal/robot/subtree.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -187,7 +188,7 @@ std::string MakeInspectionJson(const Project& project, const RobotInspection& in
                      {"linkages", LinkagesJson(project.tree)},
                      {"chains", chains},
                      {"warnings", inspection.warnings}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

@@ -16,6 +16,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/gaps.hpp"
 #include "elastocal/readers/qtm_tsv.hpp"
+#include "elastocal/tables/json_text.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -230,7 +231,7 @@ std::string MakeInfoJson(const RecordingInfo& info) {
     }
   }
   json["notes"] = info.file.notes;
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 ConvertedRecording ConvertRecording(const std::string& path, const ReaderOptions& options,

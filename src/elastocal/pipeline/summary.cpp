@@ -10,6 +10,7 @@
 #include "elastocal/pipeline/cause_picture_json.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/diagnose.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -396,7 +397,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   json["warnings"] = run.warnings;
   json["correlations"] = Correlations(result);
   json["parameters"] = Parameters(result);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

@@ -16,6 +16,7 @@
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/known_places.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
+#include "elastocal/tables/json_text.hpp"
 #include "elastocal/validation/deployment.hpp"
 
 namespace elastocal {
@@ -249,7 +250,7 @@ std::string MakeValidationJson(const ValidationRun& run) {
   }
   json["mistakes"] = run.mistakes;
   json["warnings"] = run.warnings;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

@@ -18,8 +18,8 @@ FeasibleSet MakeFeasibleSet(const RobotTree& tree, const MotionSetup& motion,
 
 /// Parameters that the chain's markers can determine while only the chain moves: those of its
 /// joints, T0 and its markers (those of joints before the chain are held). They are found as by
-/// FindBaseParameters, but over random postures within the joint limits of the chain. Of the
-/// model's compliances, those that gravity excites are among them.
+/// FindBaseParameters, but over random postures within the joint limits of the chain. The
+/// model's compliances are among them if gravity excites them.
 BaseParameters FindChainParameters(const ErrorModel& model, const MotionSetup& motion,
                                    const ChainSetup& chain, IdentifiabilityOptions options);
 

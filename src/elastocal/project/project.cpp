@@ -155,7 +155,9 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
   std::string_view beginning = text;
   if (beginning.starts_with(kByteOrderMark)) beginning.remove_prefix(kByteOrderMark.size());
   if (Trim(beginning).starts_with('<')) {
-    throw InputError(Place(file.string(), 1) + "this is XML; a project file (YAML) was expected");
+    throw InputError(Place(file.string(), 1) +
+                     "this is XML; a project file (YAML) was expected "
+                     "(`elastocal init` drafts one from a robot description)");
   }
   const YamlValue root = YamlValue::Parse(text, file.string());
   root.ExpectKeys({"robot", "couplings", "linkages", "chains", "markers", "torque_sensors",

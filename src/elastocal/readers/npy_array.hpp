@@ -29,8 +29,8 @@ using ReadBytes = std::function<std::size_t(std::span<char> to)>;
 /// Reads an array in NumPy's format (.npy): floats of 4 and 8 bytes, integers, booleans, texts,
 /// times; either byte order, rows or columns first; lists of records of these. Throws InputError,
 /// whose message begins with `place`: another kind of data (objects), a shape that the bytes do not
-/// hold, more than 2^27 numbers. Of an array of another shape than `wanted`, where that is given,
-/// only the shape is read, and the names of fields.
+/// hold, more than 2^27 numbers. If `wanted` is given and the array has another shape, only the
+/// shape and the names of fields are read.
 NpyArray ReadNpy(const ReadBytes& read, const std::string& place,
                  const std::vector<std::size_t>* wanted = nullptr);
 

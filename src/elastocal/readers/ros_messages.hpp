@@ -16,7 +16,7 @@ namespace elastocal {
 enum class RosEncoding { kCdr, kRos1 };
 
 /// The messages of a bag that a calibration can use: joint states, and poses of bodies, stamped or
-/// as transforms (tf). Any kind of bag adds them in the order of the file. Of tf, bodies are taken
+/// as transforms (tf). Any kind of bag adds them in the order of the file. Bodies of tf are taken
 /// where there are no stamped poses, or where the options name a frame.
 class RosMessages {
  public:

@@ -33,7 +33,7 @@ enum class ReadFor {
 
 /// Reads one posture table (CSV), or one or more recording folders (with experiment.yaml).
 ///
-/// Of a folder, the markers and the robot's log of each trial are filtered alike, brought to one
+/// In a folder, the markers and the robot's log of each trial are filtered alike, brought to one
 /// clock and reduced to stable samples (SampleTrial); then the trials are joined into one
 /// recording. A posture table holds such samples already.
 ///

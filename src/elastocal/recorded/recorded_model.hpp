@@ -27,9 +27,9 @@ enum class KnockSearch { kAll, kNone };
 
 /// The error model of the robot with the markers of `measured.calibration` (eq. 2, 3, 5 and 6), its
 /// identifiable parameters (section 2.1), and the clusters of markers that were knocked during the
-/// experiment. Of these, `measured` gets separate markers for before and after (SplitMarkers), and
-/// its warnings say so, as of parameters that these markers cannot identify. `seed` is taken
-/// instead of the project's.
+/// experiment. For a knocked cluster, `measured` gets separate markers for before and after
+/// (SplitMarkers). Its warnings name knocks, and parameters that these markers cannot identify.
+/// `seed` is taken instead of the project's.
 RecordedModel MakeRecordedModel(const Project& project, std::optional<std::uint64_t> seed,
                                 Measurements& measured, KnockSearch search = KnockSearch::kAll);
 

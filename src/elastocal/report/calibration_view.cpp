@@ -10,6 +10,7 @@
 #include "elastocal/report/error_table_json.hpp"
 #include "elastocal/report/residual_figures.hpp"
 #include "elastocal/report/scenes.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -132,7 +133,7 @@ std::string MakeRobotDataJson(const RobotView& view) {
   Json json = {{"format", "elastocal-report-data-1"}};
   AddRobot(view, json);
   json["project"] = ProjectJson(view);
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonLine(json) + "\n";
 }
 
 std::string MakeReportDataJson(const CalibrationView& view) {
@@ -148,7 +149,7 @@ std::string MakeReportDataJson(const CalibrationView& view) {
   json["distributions"] = MakeDistributions(view);
   json["traces"] = MakeTraces(view);
   json["signals"] = SignalsJson(view.trials);
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonLine(json) + "\n";
 }
 
 }  // namespace elastocal

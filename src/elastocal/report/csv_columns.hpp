@@ -8,8 +8,8 @@
 namespace elastocal {
 
 /// Columns of a table by name: arrays of numbers (null for empty cells), or of texts where a cell
-/// is none. Of more than `most_rows` rows that many are taken, evenly, the last one always; `rows`
-/// tells how many there were. Throws InputError naming `file` and the line: what Table refuses.
+/// is no number. At most `most_rows` rows are taken, evenly and always the last one; `rows` tells
+/// how many there were. Throws InputError naming `file` and the line: what Table refuses.
 nlohmann::ordered_json ReadCsvColumns(const std::string& file, const std::string& text,
                                       std::size_t most_rows, std::size_t& rows);
 

@@ -12,6 +12,7 @@
 #include "elastocal/report/csv_columns.hpp"
 #include "elastocal/report/encoding.hpp"
 #include "elastocal/report/json_reader.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -189,7 +190,7 @@ std::string MakeReportJson(const ReportSources& sources) {
   if (Json design = DesignJson(sources); !design.is_null()) report["design"] = std::move(design);
   report["motions"] = MotionsJson(sources);
   report["missing"] = MissingJson(report, sources);
-  return report.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return JsonLine(report);
 }
 
 std::string MakePage(std::string_view page_template, const std::string& json) {

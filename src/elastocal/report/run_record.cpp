@@ -10,6 +10,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/report/encoding.hpp"
 #include "elastocal/report/json_reader.hpp"
+#include "elastocal/tables/json_text.hpp"
 #include "elastocal/tables/read_file.hpp"
 
 namespace elastocal {
@@ -81,7 +82,7 @@ std::string UpdateRuns(const std::string& runs, const RunRecord& record) {
     item["marker_places"] = record.assumptions->marker_places;
   }
   json[record.command] = std::move(item);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

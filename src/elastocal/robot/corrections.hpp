@@ -12,8 +12,8 @@
 
 namespace elastocal {
 
-/// Known function of a posture that a correction multiplies. Of a joint's position q, its load m_z
-/// and its largest torque (the URDF's effort):
+/// Known function of a posture that a correction multiplies. Here q is a joint's position, m_z its
+/// load; its largest torque is the URDF's effort:
 enum class CorrectionShape {
   kSin,           ///< sin q: the encoder's disc is off centre
   kCos,           ///< cos q

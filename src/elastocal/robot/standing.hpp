@@ -49,12 +49,12 @@ double InsideMargin(const Polygon& polygon, const Eigen::Vector2d& point);
 /// robot presses on the floor (force.z() > 0).
 Eigen::Vector2d ZeroMomentPoint(const Eigen::Vector3d& force, const Eigen::Vector3d& moment);
 
-/// Shares the floor's wrench among soles; one wrench for each sole. Of two soles, the first gets
+/// Shares the floor's wrench among soles; one wrench for each sole. Of a pair, the first gets
 /// the share w of force and vertical moment: w = 1 if the zero-moment point is at its centre, 0 at
 /// the centre of the other, and in between by the projection on the line of the centres. Both press
 /// at the same offset from their centres, so that together they press at the zero-moment point.
 /// Both forces then have the friction ratio of the sum, and the wrenches add up to the given one
-/// exactly. Of three and more, each presses at its centre without a moment, with the forces whose
+/// exactly. Three and more press at their centres without a moment, each with the forces whose
 /// sum of squares is the least; a foot that would have to pull is left out. The shares of real legs
 /// depend on their stiffness and on errors of their geometry. Throws std::invalid_argument without
 /// soles.

@@ -63,7 +63,7 @@ class Compensator {
   const RuntimeModel& model() const noexcept { return model_; }
 
   /// The next Command is found from its plan alone, as the first one is: for a motion that starts
-  /// anew. Of joints with hysteresis the plan keeps the side on which they lie.
+  /// anew. Joints with hysteresis stay on the side of their play on which they lie.
   void Forget() noexcept;
 
   /// From now on the commands of calls along a motion (see Command) change by at most so much from

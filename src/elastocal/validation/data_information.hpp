@@ -19,8 +19,8 @@ struct DataInformation {
   Eigen::VectorXd vector;
 };
 
-/// `fitted_with`: the earlier estimate that `estimate` was fitted with. Of what the residuals of a
-/// posture share the information is less (Posterior::cluster_factor).
+/// `fitted_with`: the earlier estimate that `estimate` was fitted with. What the residuals of a
+/// posture share makes the information less (Posterior::cluster_factor).
 DataInformation InformationOfData(const CalibrationResult& estimate,
                                   const EarlierEstimate& fitted_with);
 

@@ -67,7 +67,7 @@ std::vector<int> DealFolds(const Recording& recording, const FoldOptions& option
 
 struct CrossValidation {
   int folds = 0;
-  /// Over all held-out observations that could be predicted. Of a posture on two feet, the waist's
+  /// Over all held-out observations that could be predicted. In a posture on two feet, the waist's
   /// own markers are not counted: they place it.
   ByModel<ErrorMetrics> metrics;
   /// Over those of them that the estimate from all postures does not call outliers (JudgeWithout).
