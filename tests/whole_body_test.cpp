@@ -10,6 +10,7 @@
 
 #include "elastocal/calibration/leg_stiffness.hpp"
 #include "elastocal/calibration/recording_faults.hpp"
+#include "elastocal/calibration/static_torques.hpp"
 #include "elastocal/calibration/torque_check.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/math/statistics.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "elastocal/calibration/torque_check.hpp"
+#include "elastocal/calibration/static_torques.hpp"
 #include "elastocal/robot/lumped_compliance.hpp"
 
 namespace elastocal {

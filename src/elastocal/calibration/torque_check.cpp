@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "elastocal/robot/kinematics.hpp"
+#include "elastocal/calibration/static_torques.hpp"
 #include "elastocal/robot/statics.hpp"
 
 namespace elastocal {
@@ -35,19 +35,12 @@ constexpr double kLeastAlone = 1.5;       // the same of one among others that a
 constexpr double kAlike = 1.25;           // factor between a sensor's slope and the common one
 constexpr double kFollows = 0.9;          // correlation of sensors whose slope counts
 
-/// Static and measured torques of one joint.
-struct Pairs {
-  std::vector<double> expected, measured;
-  std::vector<int> posture;
-  double weight = 0.0;  ///< the largest carried, N
-};
-
 /// Measured torques by those of statics, where these vary enough to tell.
 struct TorqueLine {
   double slope = 0.0, correlation = 0.0;
 };
 
-std::optional<TorqueLine> FitLine(const Pairs& pairs) {
+std::optional<TorqueLine> FitLine(const TorquePairs& pairs) {
   if (pairs.expected.size() < kLeastPairs) return std::nullopt;
   const auto count = static_cast<Eigen::Index>(pairs.expected.size());
   const Eigen::Map<const Eigen::ArrayXd> expected(pairs.expected.data(), count);
@@ -73,9 +66,9 @@ std::optional<TorqueLine> FitLine(const Pairs& pairs) {
 bool IsWithin(double ratio, double most) { return ratio < most && ratio * most > 1.0; }
 
 /// By joint, of those that follow statics.
-std::vector<std::optional<TorqueLine>> FollowingLines(const std::vector<Pairs>& pairs) {
+std::vector<std::optional<TorqueLine>> FollowingLines(const std::vector<TorquePairs>& pairs) {
   std::vector<std::optional<TorqueLine>> lines;
-  for (const Pairs& of : pairs) {
+  for (const TorquePairs& of : pairs) {
     lines.push_back(FitLine(of));
     if (lines.back() && !(lines.back()->correlation > kFollows)) lines.back().reset();
   }
@@ -111,7 +104,7 @@ bool IsScaledAlone(const RobotTree& tree, const std::vector<std::optional<Torque
 /// Of a joint that carries too little for its slope to be judged as that of others: whether its
 /// torques follow those of statics all the same (nothing: they may), are reversed, or do not follow
 /// them at all. Their slope is told to a tenth by what they scatter about it.
-std::optional<TorqueContradiction> CertainContradiction(const Pairs& pairs) {
+std::optional<TorqueContradiction> CertainContradiction(const TorquePairs& pairs) {
   const auto count = static_cast<Eigen::Index>(pairs.expected.size());
   if (pairs.expected.size() < kManyPairs) return std::nullopt;
   const Eigen::Map<const Eigen::ArrayXd> expected(pairs.expected.data(), count);
@@ -129,7 +122,8 @@ std::optional<TorqueContradiction> CertainContradiction(const Pairs& pairs) {
   return std::nullopt;
 }
 
-std::optional<ContradictoryTorque> Judge(int joint, const Pairs& pairs, bool is_scaled_alone) {
+std::optional<ContradictoryTorque> Judge(int joint, const TorquePairs& pairs,
+                                         bool is_scaled_alone) {
   const auto count = static_cast<Eigen::Index>(pairs.expected.size());
   if (pairs.expected.size() < kLeastPairs) return std::nullopt;
   const Eigen::Map<const Eigen::ArrayXd> expected(pairs.expected.data(), count);
@@ -166,7 +160,7 @@ struct SensorFit {
   Eigen::Index count = 0;
 };
 
-SensorFit Beside(const Pairs& measured, const Pairs& expected) {
+SensorFit Beside(const TorquePairs& measured, const TorquePairs& expected) {
   std::vector<double> m, e, own;
   for (std::size_t i = 0, j = 0; i < measured.posture.size() && j < expected.posture.size();) {
     if (measured.posture[i] == expected.posture[j]) {
@@ -191,7 +185,7 @@ SensorFit Beside(const Pairs& measured, const Pairs& expected) {
 
 /// Whether the sensors of two joints are exchanged. Joints of one limb carry much the same load:
 /// two reversed sensors may follow each other's better than their own, but their own reversed best.
-bool AreExchanged(const Pairs& a, const Pairs& b) {
+bool AreExchanged(const TorquePairs& a, const TorquePairs& b) {
   const SensorFit with_b = Beside(a, b);
   const SensorFit with_a = Beside(b, a);
   if (static_cast<std::size_t>(with_b.count) < kLeastPairs) return false;
@@ -203,10 +197,10 @@ bool AreExchanged(const Pairs& a, const Pairs& b) {
 }
 
 /// Whether the sensors all together have the opposite sign of statics.
-bool AllReversed(const std::vector<Pairs>& pairs) {
+bool AllReversed(const std::vector<TorquePairs>& pairs) {
   double as_is = 0.0, reversed = 0.0;
   std::size_t sensors = 0;
-  for (const Pairs& of : pairs) {
+  for (const TorquePairs& of : pairs) {
     if (of.posture.size() >= kLeastPairs) ++sensors;
     for (std::size_t i = 0; i < of.measured.size(); ++i) {
       as_is += std::pow(of.measured[i] - of.expected[i], 2);
@@ -234,45 +228,6 @@ std::optional<double> CommonFactor(const std::vector<std::optional<TorqueLine>>&
   return factor;
 }
 
-/// Whether the joint is between the root and one of the links.
-bool Carries(const RobotTree& tree, int joint, const std::vector<int>& links) {
-  for (int link : links) {
-    for (int on_way : JointsToBody(tree, tree.links[link].body)) {
-      if (on_way == joint) return true;
-    }
-  }
-  return false;
-}
-
-/// By joint: static and measured torques in the postures in which statics tells them.
-std::vector<Pairs> PairTorques(const ErrorModel& model, const Recording& recording,
-                               const Placement& placement) {
-  const std::size_t joints = model.tree.joints.size();
-  std::vector<Pairs> pairs(joints);
-  for (int i = 0; i < recording.posture_count(); ++i) {
-    const Trial& trial = recording.trials[recording.trial[i]];
-    const int fixed = trial.support.size() == 1 ? trial.support[0] : 0;
-    const Eigen::Vector3d gravity_waist =
-        placement.T_ref_waist[i].linear().transpose() * recording.gravity;
-    const std::vector<CarriedLoad> carried =
-        CarriedLoads(model.tree, LinkTransforms(model.tree, recording.q.row(i).transpose()), fixed);
-    const Eigen::VectorXd expected =
-        StaticTorques(model.tree, recording.q.row(i).transpose(), gravity_waist, fixed);
-    for (std::size_t k = 0; k < joints; ++k) {
-      const int joint = static_cast<int>(k);
-      const double measured = recording.torques(i, joint);
-      // How two feet share the load, statics does not say.
-      const bool shared = trial.support.size() > 1 && Carries(model.tree, joint, trial.support);
-      if (!std::isfinite(measured) || shared) continue;
-      pairs[k].expected.push_back(expected[model.tree.joints[k].coordinate]);
-      pairs[k].measured.push_back(measured);
-      pairs[k].posture.push_back(i);
-      pairs[k].weight = std::max(pairs[k].weight, recording.gravity.norm() * carried[k].mass);
-    }
-  }
-  return pairs;
-}
-
 }  // namespace
 
 std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& model,
@@ -280,7 +235,7 @@ std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& mode
                                                           double slip_m) {
   if (recording.trials.empty() || recording.torques.rows() == 0) return {};
   if (!(TotalMass(model.tree) > 0.0)) return {};
-  const std::vector<Pairs> pairs =
+  const std::vector<TorquePairs> pairs =
       PairTorques(model, recording, RegisterPlacement(model, recording, slip_m));
   const std::size_t joints = pairs.size();
   std::vector<ContradictoryTorque> found;
@@ -313,27 +268,6 @@ std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& mode
     if (const auto one = Judge(k, pairs[k], scaled)) found.push_back(*one);
   }
   return found;
-}
-
-double TorqueDisagreement(const ErrorModel& model, const Recording& recording,
-                          const Placement& placement, int leg) {
-  double squares = 0.0, all = 0.0;
-  if (recording.torques.rows() > 0 && TotalMass(model.tree) > 0.0) {
-    const std::vector<Pairs> pairs = PairTorques(model, recording, placement);
-    const auto on_this_leg = [&](int posture) {
-      return recording.trials[recording.trial[posture]].support ==
-             std::vector{model.legs[leg].link};
-    };
-    for (int joint : model.legs[leg].joints) {
-      const Pairs& of = pairs[joint];
-      for (std::size_t j = 0; j < of.posture.size(); ++j) {
-        if (!on_this_leg(of.posture[j])) continue;
-        squares += std::pow(of.measured[j] - of.expected[j], 2);
-        all += std::pow(of.measured[j], 2);
-      }
-    }
-  }
-  return all > 0.0 ? std::sqrt(squares / all) : std::numeric_limits<double>::infinity();
 }
 
 std::string Describe(const ContradictoryTorque& found, const RobotTree& tree) {

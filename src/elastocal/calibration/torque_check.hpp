@@ -43,13 +43,6 @@ std::vector<ContradictoryTorque> FindContradictoryTorques(const ErrorModel& mode
                                                           const Recording& recording,
                                                           double slip_m);
 
-/// How far the torques of a leg's sensors are from those that statics makes of the masses of the
-/// robot description, in postures on this leg alone: root mean square of the difference over that
-/// of the torques, all joints together. Gains and biases of the sensors, friction and wrong masses
-/// are in it: what is not known of the leg's load. Infinite where nothing was measured.
-double TorqueDisagreement(const ErrorModel& model, const Recording& recording,
-                          const Placement& placement, int leg);
-
 /// "leg_left_4_joint: its torques have the opposite sign of those of statics".
 std::string Describe(const ContradictoryTorque& found, const RobotTree& tree);
 
