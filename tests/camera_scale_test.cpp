@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "elastocal/calibration/camera_scale.hpp"
+#include "elastocal/screening/camera_scale.hpp"
 
 #include <map>
 

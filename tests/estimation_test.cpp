@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/kinematics.hpp"
+#include "elastocal/screening/recording_faults.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 #include "tests/expect_input_error.hpp"

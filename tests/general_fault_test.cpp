@@ -7,17 +7,17 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/calibration/carrying_link.hpp"
-#include "elastocal/calibration/coarse_positions.hpp"
-#include "elastocal/calibration/loose_clusters.hpp"
-#include "elastocal/calibration/odd_postures.hpp"
 #include "elastocal/calibration/prediction.hpp"
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/mistakes/find_faults.hpp"
 #include "elastocal/mistakes/up_by_loads.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
+#include "elastocal/screening/carrying_link.hpp"
+#include "elastocal/screening/coarse_positions.hpp"
+#include "elastocal/screening/loose_clusters.hpp"
+#include "elastocal/screening/odd_postures.hpp"
+#include "elastocal/screening/recording_faults.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/test_files.hpp"
 

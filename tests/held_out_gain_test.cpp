@@ -5,13 +5,13 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/measurement/thinned_motions.hpp"
 #include "elastocal/mistakes/find_contradictions.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/screening/recording_faults.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/validation/held_out.hpp"
 #include "tests/test_files.hpp"

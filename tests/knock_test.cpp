@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/calibration/knocks.hpp"
 #include "elastocal/pipeline/cross_validate.hpp"
 #include "elastocal/project/project.hpp"
+#include "elastocal/screening/knocks.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/standing_robot.hpp"
 #include "tests/test_files.hpp"

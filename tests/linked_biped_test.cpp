@@ -10,7 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/io/joint_log.hpp"
 #include "elastocal/io/linkage_file.hpp"
@@ -24,6 +23,7 @@
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/linkage_errors.hpp"
 #include "elastocal/robot/move_motors.hpp"
+#include "elastocal/screening/recording_faults.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/simulation/true_robot.hpp"
 #include "elastocal/simulation/virtual_robot.hpp"

@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/calibration/knocks.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/robot/kinematics.hpp"
+#include "elastocal/screening/knocks.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 #include "tests/standing_robot.hpp"

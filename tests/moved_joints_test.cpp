@@ -11,10 +11,10 @@
 
 #include <gtest/gtest.h>
 
-#include "elastocal/calibration/camera_scale.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
+#include "elastocal/screening/camera_scale.hpp"
 #include "tests/invented_arm.hpp"
 
 namespace elastocal {

@@ -8,13 +8,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "elastocal/calibration/moved_frame.hpp"
-#include "elastocal/calibration/told_positions.hpp"
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/robot/coupling.hpp"
 #include "elastocal/robot/kinematics.hpp"
+#include "elastocal/screening/moved_frame.hpp"
+#include "elastocal/screening/told_positions.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/linked_biped.hpp"
 

@@ -9,11 +9,11 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/calibration/leg_stiffness.hpp"
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/calibration/static_torques.hpp"
-#include "elastocal/calibration/torque_check.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/screening/recording_faults.hpp"
+#include "elastocal/screening/torque_check.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 #include "tests/dense_problem.hpp"
 #include "tests/standing_robot.hpp"

@@ -30,7 +30,8 @@ void Add(const Eigen::ArrayXd& shares, const Eigen::VectorXd& residual,
 }
 
 /// What the fit leaves of the variance of a block's rows.
-Eigen::ArrayXd Left(const ExplainedRows& explained, int block, const Eigen::ArrayXd& counts) {
+Eigen::ArrayXd LeftOfBlock(const ExplainedRows& explained, int block,
+                           const Eigen::ArrayXd& counts) {
   return LeftByPose(explained, block, counts) -
          (explained.all[block] - explained.by_nuisance[block]).array();
 }
@@ -77,7 +78,7 @@ VarianceComponents CollectComponents(const FitProblem& problem, const Selection&
     if (!body.used) continue;
     const int group = problem.group[body.posture];
     const Eigen::ArrayXd counts = residuals.Counts(b);
-    const Eigen::ArrayXd left = Left(explained, b, counts);
+    const Eigen::ArrayXd left = LeftOfBlock(explained, b, counts);
     for (NoiseSource source : {NoiseSource::kMarker, NoiseSource::kBodyPosition}) {
       Add(body.Shares(noise, group, source), residuals.Residual(b), counts, left,
           components[group][static_cast<int>(source)]);
@@ -88,7 +89,7 @@ VarianceComponents CollectComponents(const FitProblem& problem, const Selection&
     if (selection.tied[posture] == 0) continue;
     const int block = residuals.TieBlock(static_cast<int>(t));
     const Eigen::ArrayXd counts = residuals.Counts(block);
-    const Eigen::ArrayXd left = Left(explained, block, counts);
+    const Eigen::ArrayXd left = LeftOfBlock(explained, block, counts);
     auto& of_group = components[problem.group[posture]];
     for (NoiseSource source : {NoiseSource::kWaistPosition, NoiseSource::kWaistRotation}) {
       Eigen::ArrayXd shares = Eigen::ArrayXd::Zero(6);

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include "elastocal/calibration/prediction.hpp"
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/screening/recording_faults.hpp"
 
 namespace elastocal {
 namespace {

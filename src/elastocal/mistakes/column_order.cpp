@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/calibration/positions_by_markers.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/math/transform.hpp"
@@ -18,6 +17,7 @@
 #include "elastocal/measurement/trial_names.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/linkage.hpp"
+#include "elastocal/screening/positions_by_markers.hpp"
 
 namespace elastocal {
 namespace {

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
@@ -19,6 +18,7 @@
 #include "elastocal/mistakes/held_out_contrast.hpp"
 #include "elastocal/mistakes/moved_between.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/screening/recording_faults.hpp"
 #include "elastocal/validation/held_out.hpp"
 
 namespace elastocal {

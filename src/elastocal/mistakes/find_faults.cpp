@@ -7,14 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/calibration/camera_scale.hpp"
-#include "elastocal/calibration/carrying_link.hpp"
-#include "elastocal/calibration/coarse_positions.hpp"
-#include "elastocal/calibration/loose_clusters.hpp"
-#include "elastocal/calibration/odd_postures.hpp"
-#include "elastocal/calibration/recording_faults.hpp"
-#include "elastocal/calibration/up_by_torques.hpp"
-#include "elastocal/calibration/up_check.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
@@ -22,6 +14,14 @@
 #include "elastocal/mistakes/trial_offset.hpp"
 #include "elastocal/mistakes/tried_correction.hpp"
 #include "elastocal/mistakes/up_by_loads.hpp"
+#include "elastocal/screening/camera_scale.hpp"
+#include "elastocal/screening/carrying_link.hpp"
+#include "elastocal/screening/coarse_positions.hpp"
+#include "elastocal/screening/loose_clusters.hpp"
+#include "elastocal/screening/odd_postures.hpp"
+#include "elastocal/screening/recording_faults.hpp"
+#include "elastocal/screening/up_by_torques.hpp"
+#include "elastocal/screening/up_check.hpp"
 
 namespace elastocal {
 namespace {

@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
@@ -22,6 +21,7 @@
 #include "elastocal/recorded/find_base.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/robot/move_motors.hpp"
+#include "elastocal/screening/recording_faults.hpp"
 
 namespace elastocal {
 namespace {

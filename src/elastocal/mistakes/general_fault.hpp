@@ -4,8 +4,8 @@
 #include <string>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/calibration/recording_fault.hpp"
 #include "elastocal/project/project.hpp"
+#include "elastocal/screening/recording_fault.hpp"
 
 namespace elastocal {
 

@@ -6,10 +6,10 @@
 #include <numeric>
 #include <utility>
 
-#include "elastocal/calibration/log_check.hpp"
-#include "elastocal/calibration/placed_misfit.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/screening/log_check.hpp"
+#include "elastocal/screening/placed_misfit.hpp"
 
 namespace elastocal {
 namespace {

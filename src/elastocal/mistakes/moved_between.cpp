@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/calibration/split_markers.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/trial_names.hpp"
 #include "elastocal/mistakes/estimated_place.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/recorded/find_base.hpp"
+#include "elastocal/screening/split_markers.hpp"
 
 namespace elastocal {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "elastocal/calibration/camera_scale.hpp"
 #include "elastocal/observation/observation_fit.hpp"
+#include "elastocal/screening/camera_scale.hpp"
 
 namespace elastocal {
 

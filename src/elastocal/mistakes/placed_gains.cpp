@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "elastocal/calibration/knocks.hpp"
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/thinned_motions.hpp"
+#include "elastocal/screening/knocks.hpp"
+#include "elastocal/screening/recording_faults.hpp"
 
 namespace elastocal {
 namespace {

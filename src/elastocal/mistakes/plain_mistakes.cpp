@@ -15,17 +15,17 @@
 #include <fmt/ranges.h>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/calibration/log_check.hpp"
-#include "elastocal/calibration/moved_frame.hpp"
-#include "elastocal/calibration/odd_postures.hpp"
-#include "elastocal/calibration/placed_misfit.hpp"
-#include "elastocal/calibration/told_positions.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/log_alternatives.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/recorded/find_base.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
+#include "elastocal/screening/log_check.hpp"
+#include "elastocal/screening/moved_frame.hpp"
+#include "elastocal/screening/odd_postures.hpp"
+#include "elastocal/screening/placed_misfit.hpp"
+#include "elastocal/screening/told_positions.hpp"
 
 namespace elastocal {
 namespace {

@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/calibration/log_check.hpp"
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/calibration/turned_axes.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -20,6 +19,7 @@
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/mistakes/suspected_signs.hpp"
 #include "elastocal/mistakes/tried_correction.hpp"
+#include "elastocal/screening/log_check.hpp"
 
 namespace elastocal {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/calibration/log_check.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/recorded/measurements.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
+#include "elastocal/screening/log_check.hpp"
 
 namespace elastocal {
 

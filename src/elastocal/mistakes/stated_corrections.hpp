@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/recorded/measurements.hpp"
 #include "elastocal/robot/robot_tree.hpp"
+#include "elastocal/screening/recording_faults.hpp"
 
 namespace elastocal {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/calibration/log_check.hpp"
+#include "elastocal/screening/log_check.hpp"
 
 namespace elastocal {
 

@@ -6,12 +6,12 @@
 #include <cstddef>
 #include <vector>
 
-#include "elastocal/calibration/distance_parabola.hpp"
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/robot/linkage.hpp"
+#include "elastocal/screening/distance_parabola.hpp"
+#include "elastocal/screening/recording_faults.hpp"
 
 namespace elastocal {
 namespace {

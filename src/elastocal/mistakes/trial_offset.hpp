@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "elastocal/calibration/calibrate.hpp"
-#include "elastocal/calibration/recording_fault.hpp"
+#include "elastocal/screening/recording_fault.hpp"
 
 namespace elastocal {
 

@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/calibration/label_check.hpp"
-#include "elastocal/calibration/row_shift.hpp"
-#include "elastocal/calibration/table_check.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/mistakes/column_order.hpp"
 #include "elastocal/mistakes/log_alternatives.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
+#include "elastocal/screening/label_check.hpp"
+#include "elastocal/screening/row_shift.hpp"
+#include "elastocal/screening/table_check.hpp"
 
 namespace elastocal {
 namespace {

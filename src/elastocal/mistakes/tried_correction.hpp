@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/calibration/log_check.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/robot/error_model.hpp"
+#include "elastocal/screening/log_check.hpp"
 
 namespace elastocal {
 

@@ -9,9 +9,7 @@
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
 
-#include "elastocal/calibration/coarse_positions.hpp"
 #include "elastocal/calibration/gauge.hpp"
-#include "elastocal/calibration/loose_clusters.hpp"
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -32,6 +30,8 @@
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/recorded/repeated_trials.hpp"
 #include "elastocal/robot/kinematics.hpp"
+#include "elastocal/screening/coarse_positions.hpp"
+#include "elastocal/screening/loose_clusters.hpp"
 
 namespace elastocal {
 namespace {

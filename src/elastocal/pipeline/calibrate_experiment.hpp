@@ -8,16 +8,16 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/calibration/camera_scale.hpp"
 #include "elastocal/calibration/frame_precision.hpp"
-#include "elastocal/calibration/knocks.hpp"
-#include "elastocal/calibration/recording_faults.hpp"
 #include "elastocal/description/calibrated_urdf.hpp"
 #include "elastocal/identifiability/observability.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/coverage.hpp"
 #include "elastocal/recorded/choose_elasticity.hpp"
 #include "elastocal/recorded/measurements.hpp"
+#include "elastocal/screening/camera_scale.hpp"
+#include "elastocal/screening/knocks.hpp"
+#include "elastocal/screening/recording_faults.hpp"
 #include "elastocal/validation/deployment.hpp"
 #include "elastocal/validation/held_out.hpp"
 #include "elastocal/validation/model_comparison.hpp"

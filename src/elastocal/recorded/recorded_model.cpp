@@ -5,12 +5,12 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/calibration/moved_markers.hpp"
 #include "elastocal/calibration/placing_markers.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/robot/parameter_names.hpp"
+#include "elastocal/screening/moved_markers.hpp"
 
 namespace elastocal {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "elastocal/calibration/knocks.hpp"
-#include "elastocal/calibration/torque_check.hpp"
 #include "elastocal/recorded/measurements.hpp"
+#include "elastocal/screening/knocks.hpp"
+#include "elastocal/screening/torque_check.hpp"
 
 namespace elastocal {
 

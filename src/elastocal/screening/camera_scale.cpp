@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/screening/camera_scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "elastocal/calibration/marker_places.hpp"
+#include "elastocal/math/dense.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/math/statistics.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kLeastScale = 3e-3;
+constexpr double kFalseAlarm = 1e-3;  // probability that a clean recording is accused
+// Times the prior of lengths: as widely do they scatter at least, where many tell how widely (of
+// whatever robot), and where some do; fewer tell nothing of it.
+constexpr double kNarrowestPrior = 0.6, kNarrowestOfSome = 0.4;
+constexpr Eigen::Index kManyLengths = 20;
+constexpr double kSomeLengths = 8.0;  // that the recording determines
+constexpr int kRounds = 10;
+constexpr int kFewestLengths = 4;
+constexpr double kLeastLength = 0.02;  // m: shorter ones tell nothing of a scale
+
+/// What a length of a joint changes by where the joint is displaced by `move`, m: for a general
+/// joint a displacement in its constant frame, of which r, d and b are the directions -y, x and z.
+double GeneralLength(const Eigen::Vector3d& move, ParameterKind kind) {
+  if (kind == ParameterKind::kR) return -move.y();
+  if (kind == ParameterKind::kD) return move.x();
+  return move.z();
+}
+
+/// What a length of a joint changes by where the robot is larger by one, m.
+double NominalLength(const JointPlacement& placement, ParameterKind kind) {
+  const Transform& T = placement.T_parent_pre;
+  if (placement.general) return GeneralLength(T.linear().transpose() * T.translation(), kind);
+  if (kind == ParameterKind::kR) return placement.r;
+  return kind == ParameterKind::kD ? placement.d : placement.b;
+}
+
+/// By how much the lengths change when the common normal between a joint's axis and the one that
+/// continues the chain is moved by one along both: the frame of the first joint moves with it, and
+/// all that the joint carries has to be moved back. `lengths`: indices of the model's parameters.
+Eigen::VectorXd ShiftOfNormal(const ErrorModel& model, const std::vector<int>& lengths, int joint,
+                              int next) {
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(lengths.size()));
+  for (Eigen::Index i = 0; i < shift.size(); ++i) {
+    const Parameter& length = model.parameters[Size(lengths[Size(i)])];
+    const JointPlacement& placement = model.placements[Size(length.joint)];
+    if (length.joint == joint && length.kind == ParameterKind::kR) shift[i] = 1.0;
+    if (model.tree.joints[Size(length.joint)].parent_body != joint + 1) continue;
+    if (placement.general) {
+      const Eigen::Vector3d along = placement.T_parent_pre.linear().row(2).transpose();
+      shift[i] = GeneralLength(-along, length.kind);
+    } else if (length.joint == next && length.kind == ParameterKind::kR) {
+      shift[i] = -std::cos(placement.alpha);
+    }
+  }
+  return shift;
+}
+
+/// Covariance of the lengths' own errors beside those of one variance, in that variance: the common
+/// normal of two axes that are inclined a little to each other is far away, and errors of the axes'
+/// places and directions move it along both by the more, the less they are inclined.
+Eigen::MatrixXd ShiftsOfNormals(const ErrorModel& model, const std::vector<int>& lengths,
+                                const Eigen::VectorXd& prior_sd) {
+  const auto count = static_cast<Eigen::Index>(lengths.size());
+  Eigen::MatrixXd shifts = Eigen::MatrixXd::Zero(count, count);
+  const double unit = prior_sd[lengths.front()];  // that of all lengths
+  for (std::size_t p = 0; p < model.parameters.size(); ++p) {
+    const Parameter& twist = model.parameters[p];
+    if (twist.kind != ParameterKind::kAlpha || twist.joint < 0) continue;
+    const JointPlacement& placement = model.placements[Size(twist.joint)];
+    const int before = model.tree.joints[Size(twist.joint)].parent_body - 1;
+    if (placement.general || placement.parallel || before < 0) continue;
+    const Eigen::VectorXd shift = ShiftOfNormal(model, lengths, before, twist.joint);
+    const double away = std::hypot(model.placements[Size(before)].r, placement.r);
+    const double turned = prior_sd[static_cast<Eigen::Index>(p)] * away / unit;
+    const double amplified = std::pow(std::tan(placement.alpha), -2);
+    shifts += (1.0 + turned * turned) * amplified * shift * shift.transpose();
+  }
+  return shifts;
+}
+
+/// What the data tell of the lengths of the joints, in units of their prior, all else being
+/// eliminated.
+struct KnownLengths {
+  std::vector<int> parameters;  ///< of the model
+  Eigen::MatrixXd information;  ///< of the data alone, as the rest
+  Eigen::VectorXd b;            ///< information times the estimate
+  Eigen::VectorXd pattern;      ///< of a robot that is larger by one
+};
+
+/// Nothing where too few lengths could tell a scale.
+std::optional<KnownLengths> LengthsOf(const CalibrationResult& result) {
+  const ErrorModel& model = result.model;
+  const std::vector<int>& fitted = result.posterior.parameters;
+  const auto count = static_cast<Eigen::Index>(fitted.size());
+  const Eigen::VectorXd unit = result.prior_sd(fitted);
+  KnownLengths known;
+  std::vector<double> pattern;
+  std::vector<Eigen::Index> lengths, others;
+  int told = 0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Parameter& parameter = model.parameters[Size(fitted[Size(i)])];
+    if (parameter.joint < 0 || GroupOf(parameter.kind) != PriorGroup::kLengths) {
+      others.push_back(i);
+      continue;
+    }
+    lengths.push_back(i);
+    known.parameters.push_back(fitted[Size(i)]);
+    const double length = NominalLength(model.placements[Size(parameter.joint)], parameter.kind);
+    pattern.push_back(length / unit[i]);
+    told += std::abs(length) > kLeastLength ? 1 : 0;
+  }
+  if (told < kFewestLengths) return std::nullopt;
+  known.pattern = Eigen::Map<const Eigen::VectorXd>(pattern.data(), std::ssize(pattern));
+  const Eigen::VectorXd x = result.delta(fitted).cwiseQuotient(unit);
+  Eigen::MatrixXd A = unit.asDiagonal() * result.posterior.data_information * unit.asDiagonal();
+  const Eigen::VectorXd b = A * x + x;  // of the data alone
+  // All but the lengths have their own prior, whatever that of the lengths, and are eliminated.
+  A.diagonal() += Eigen::VectorXd::Ones(count);
+  const Eigen::MatrixXd across = A(others, lengths);
+  Eigen::MatrixXd both(across.rows(), across.cols() + 1);
+  both << across, b(others);
+  const Eigen::MatrixXd eliminated =
+      across.transpose() * SolvePositive(Eigen::MatrixXd(A(others, others)), both);
+  known.information = A(lengths, lengths);
+  known.information.diagonal().array() -= 1.0;
+  known.information -= eliminated.leftCols(across.cols());
+  known.b = b(lengths) - eliminated.rightCols<1>();
+  return known;
+}
+
+/// The scale beside lengths of a prior as wide as they ask for: the prior was widened with the
+/// pattern in it, and small robots and industrial arms are made more exactly than it expects. A
+/// width of `first` is that of the prior as it was before; `own_weight` is the prior's weight for a
+/// width of one. Nothing where the lengths tell no scale.
+std::optional<CommonScale> ScaleBeside(const KnownLengths& lengths,
+                                       const Eigen::MatrixXd& own_weight, double first) {
+  const Eigen::Index count = lengths.pattern.size();
+  double width = first;
+  CommonScale scale;
+  for (int round = 0; round < kRounds; ++round) {
+    const double weight = 1.0 / (width * width);
+    const Eigen::MatrixXd information = lengths.information + weight * own_weight;
+    const Eigen::MatrixXd covariance = InverseOfPositive(information);
+    const Eigen::VectorXd pull = weight * (own_weight * lengths.pattern);
+    const double known = pull.dot(lengths.pattern) - pull.dot(covariance * pull);
+    if (!(known > 0.0)) return std::nullopt;
+    scale.size = pull.dot(covariance * lengths.b) / known;
+    scale.sd = 1.0 / std::sqrt(known);
+    const Eigen::VectorXd own =
+        covariance * (lengths.b + scale.size * pull) - scale.size * lengths.pattern;
+    const double squares = weight * own.dot(own_weight * own);
+    const double determined =
+        static_cast<double>(count) - weight * own_weight.cwiseProduct(covariance).sum();
+    scale.degrees_of_freedom = std::max(1.0, determined);
+    if (determined < 1.0) break;
+    double narrowest = count >= kManyLengths ? kNarrowestPrior * first : first;
+    if (count < kManyLengths && determined >= kSomeLengths) {
+      narrowest = kNarrowestOfSome * first;
+      scale.degrees_of_freedom -= 1.0;  // the scale's own
+    }
+    width = std::max(narrowest, width * std::sqrt(squares / determined));
+  }
+  return scale;
+}
+
+}  // namespace
+
+std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
+                                               const CalibrationOptions& options) {
+  if (KnowsRobot(options.earlier)) return std::nullopt;
+  const std::optional<KnownLengths> lengths = LengthsOf(result);
+  if (!lengths) return std::nullopt;
+  const Eigen::Index count = lengths->pattern.size();
+  const Eigen::MatrixXd own_weight =
+      InverseOfPositive(Eigen::MatrixXd::Identity(count, count) +
+                        ShiftsOfNormals(result.model, lengths->parameters, result.prior_sd));
+  return ScaleBeside(*lengths, own_weight, 1.0 / result.prior_scale[PriorGroup::kLengths]);
+}
+
+std::pair<double, double> CompatibleScales(const CommonScale& scale) {
+  const double width = StudentQuantile(0.975, scale.degrees_of_freedom) * scale.sd;
+  return {scale.size - width, scale.size + width};
+}
+
+bool IsDoubtful(const CommonScale& scale) {
+  constexpr double kOneInFifty = 0.02;
+  return std::abs(scale.size) > kLeastScale &&
+         StudentTwoSidedTail(scale.size / scale.sd, scale.degrees_of_freedom) < kOneInFifty;
+}
+
+std::string DescribeDoubt(const CommonScale& scale) {
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "the cameras' positions may be %.4f +- %.4f times the true ones in all trials: all lengths "
+      "of "
+      "the robot are off by as much, which is not certain enough to object to (one robot in fifty "
+      "is of such a size); a bar of known length beside the robot tells "
+      "(recording.reference_lengths)",
+      1.0 + scale.size, scale.sd);
+  return text;
+}
+
+std::optional<CommonScale> FindWrongScale(const CalibrationResult& result,
+                                          const CalibrationOptions& options) {
+  const auto scale = EstimateCommonScale(result, options);
+  const bool wrong =
+      scale && std::abs(scale->size) > kLeastScale &&
+      StudentTwoSidedTail(scale->size / scale->sd, scale->degrees_of_freedom) < kFalseAlarm;
+  return wrong ? scale : std::nullopt;
+}
+
+std::string Describe(const CommonScale& scale) {
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "the cameras' positions seem %.4f +- %.4f times the true ones in all trials, since all "
+      "lengths of the robot are off by as much: calibrate the cameras again with the right "
+      "wand, or describe the robot with its own size (--accept scale=%.5f corrects it)",
+      1.0 + scale.size, scale.sd, 1.0 + scale.size);
+  return text;
+}
+
+}  // namespace elastocal

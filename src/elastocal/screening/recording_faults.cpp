@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/screening/recording_faults.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "elastocal/calibration/fit.hpp"
+#include "elastocal/calibration/variances.hpp"
+#include "elastocal/measurement/moments.hpp"
+#include "elastocal/robot/linkage.hpp"
+#include "elastocal/robot/move_motors.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kStep = 1e-6;  // of a derivative by differences: rad, m, relative
+constexpr double kLeastExplained = 0.06;
+constexpr double kLeastOfChains = 0.5;  // of what is left of the chains that it is in
+constexpr int kLeastSide = 3;           // postures before and after it
+constexpr int kSplits = 12;      // of the recording, after which an offset of a joint may begin
+constexpr int kTrialSplits = 6;  // of a trial, after which one may begin that ends with the trial
+
+using Blocks = std::vector<Eigen::VectorXd>;
+
+class FaultSearch {
+ public:
+  /// `only`: the fault that is looked for; none: all.
+  FaultSearch(const CalibrationResult& result, const Recording& recording,
+              const CalibrationOptions& options, const RecordingFault* only = nullptr)
+      : result_(result),
+        recording_(recording),
+        options_(options),
+        selection_(SelectAll(result.model, recording)) {
+    fit_.delta = result.delta;
+    fit_.placement = result.placement;
+    fit_.noise = result.noise;
+    fit_.prior_scale = result.prior_scale;
+    // A fault may be what the fit left out as outliers: all observations take part, but each by a
+    // limited weight.
+    fit_.weights = Weights();
+    FitResiduals residuals(Problem(recording), selection_, result.posterior.parameters, fit_);
+    BodyResiduals& body = residuals.body;
+    body.Evaluate(body.Start(), true);
+    posture_.assign(body.residual_blocks.size(), -1);
+    for (int b = 0; b < body.body_count(); ++b) posture_[b] = selection_.bodies[b].posture;
+    for (std::size_t t = 0; t < body.tied_postures().size(); ++t) {
+      posture_[body.TieBlock(static_cast<int>(t))] = body.tied_postures()[t];
+    }
+    at_ = Residuals(body);
+    const NormalEquations equations(body);
+    const Eigen::MatrixXd covariance = InverseOfInformation(equations.information());
+    double with_priors = 0.0;
+    for (std::size_t b = 0; b < posture_.size(); ++b) {
+      if (!body.residual_blocks[b].active) continue;
+      with_priors += body.Residual(static_cast<int>(b)).squaredNorm();
+      squares_ += at_[b].squaredNorm();
+    }
+    // By these weights the fit may be far from where the other unknowns explain most.
+    squares_ = std::min(squares_, with_priors - 2.0 * equations.Decrease(covariance));
+    if (only != nullptr) {
+      Measure(equations, covariance, *only);
+      return;
+    }
+    for (const int coordinate : Coordinates()) TryJoint(equations, covariance, coordinate);
+    const std::vector<Linkage>& linkages = result.model.tree.linkages;
+    for (std::size_t k = 0; k < linkages.size(); ++k) {
+      for (std::size_t rod = 0; rod < linkages[k].rods.size(); ++rod) {
+        TryMotor(equations, covariance, {static_cast<int>(k), static_cast<int>(rod)});
+      }
+    }
+    TryUnfinished(equations, covariance);
+    TryScale(equations, covariance);
+    std::stable_sort(
+        found_.begin(), found_.end(),
+        [](const RecordingFault& a, const RecordingFault& b) { return a.share > b.share; });
+  }
+
+  std::vector<RecordingFault> found() && { return std::move(found_); }
+
+ private:
+  FitProblem Problem(const Recording& recording) const {
+    return {result_.model, recording, options_, result_.group};
+  }
+
+  RobustWeights Weights() const {
+    FitResiduals residuals(Problem(recording_), selection_, result_.posterior.parameters, fit_);
+    residuals.body.Evaluate(residuals.body.Start(), false);
+    return EstimateWeights(Problem(recording_), selection_, fit_.noise, residuals.body,
+                           Robustness::kMedians);
+  }
+
+  /// Of observations and constraints.
+  Blocks Residuals(const BodyResiduals& body) const {
+    Blocks residuals(posture_.size());
+    for (std::size_t b = 0; b < posture_.size(); ++b) {
+      if (posture_[b] >= 0) residuals[b] = body.Residual(static_cast<int>(b));
+    }
+    return residuals;
+  }
+
+  /// Change of the residuals by a change of the recording, over kStep.
+  Blocks Derivative(const Recording& changed) const {
+    FitResiduals residuals(Problem(changed), selection_, result_.posterior.parameters, fit_);
+    residuals.body.Evaluate(residuals.body.Start(), false);
+    Blocks derivative = Residuals(residuals.body);
+    for (std::size_t b = 0; b < derivative.size(); ++b)
+      derivative[b] = (derivative[b] - at_[b]) / kStep;
+    return derivative;
+  }
+
+  std::set<int> Coordinates() const {
+    std::set<int> coordinates;
+    for (const int joint : result_.model.active_joints) {
+      if (IsMovedByRods(result_.model.tree, joint)) continue;  // its motors are logged
+      coordinates.insert(result_.model.tree.joints[joint].coordinate);
+    }
+    return coordinates;
+  }
+
+  /// What is tried: a fault, whose effect is a derivative times a factor of each posture.
+  struct Trial {
+    RecordingFault fault;
+    Eigen::VectorXd factor;
+  };
+
+  Trial MakeTrial(const RecordingFault& fault) const {
+    Trial trial{fault, Eigen::VectorXd(recording_.posture_count())};
+    for (int i = 0; i < trial.factor.size(); ++i) trial.factor[i] = FactorOf(fault, recording_, i);
+    return trial;
+  }
+
+  /// Of the chains (CalibrationResult::group) in whose postures a trial does anything.
+  double SquaresOfChains(const Blocks& derivative, const Eigen::VectorXd& factor) const {
+    std::set<int> chains;
+    for (std::size_t b = 0; b < posture_.size(); ++b) {
+      const int i = posture_[b];
+      if (i < 0 || factor[i] == 0.0 || derivative[b].isZero(0.0)) continue;
+      chains.insert(result_.group[i]);
+    }
+    double squares = 0.0;
+    for (std::size_t b = 0; b < posture_.size(); ++b) {
+      if (posture_[b] >= 0 && chains.contains(result_.group[posture_[b]])) {
+        squares += at_[b].squaredNorm();
+      }
+    }
+    return squares;
+  }
+
+  /// All of them, by what the fit leaves.
+  std::vector<RecordingFault> Measured(const NormalEquations& equations,
+                                       const Eigen::MatrixXd& covariance, const Blocks& derivative,
+                                       const std::vector<Trial>& trials) const {
+    Eigen::MatrixXd factors(recording_.posture_count(), static_cast<Eigen::Index>(trials.size()));
+    for (std::size_t k = 0; k < trials.size(); ++k) {
+      factors.col(static_cast<Eigen::Index>(k)) = trials[k].factor;
+    }
+    const auto additions = equations.Add(derivative, posture_, factors, covariance);
+    std::vector<RecordingFault> measured;
+    for (std::size_t k = 0; k < trials.size(); ++k) {
+      RecordingFault fault = trials[k].fault;
+      // What has to be added to the recording is what it lacks.
+      fault.size = -additions[k].value;
+      fault.sd = std::sqrt(additions[k].variance * std::max(1.0, result_.posterior.cluster_factor));
+      fault.share = additions[k].gain / squares_;
+      measured.push_back(fault);
+    }
+    return measured;
+  }
+
+  void Try(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
+           const Blocks& derivative, const std::vector<Trial>& trials, bool slides) {
+    const std::vector<RecordingFault> measured =
+        Measured(equations, covariance, derivative, trials);
+    for (std::size_t k = 0; k < trials.size(); ++k) {
+      const RecordingFault& fault = measured[k];
+      const bool matters = std::abs(fault.size) > LeastSize(fault.kind, slides) &&
+                           std::abs(fault.size) < LargestSize(fault.kind, slides);
+      if (!IsCertain(fault) || !matters) continue;
+      const bool explains =
+          fault.share > kLeastExplained ||
+          fault.share * squares_ > kLeastOfChains * SquaresOfChains(derivative, trials[k].factor);
+      if (explains) found_.push_back(fault);
+    }
+  }
+
+  Blocks ByPositions(int coordinate) const {
+    Recording changed = recording_;
+    changed.q.col(coordinate).array() += kStep;
+    return Derivative(changed);
+  }
+
+  Blocks ByCameras(const RecordingFault& fault) const {
+    Recording changed = recording_;
+    changed.markers += kStep * CameraDisplacements(fault, recording_);
+    return Derivative(changed);
+  }
+
+  Blocks ByMoves() const {
+    Recording changed = recording_;
+    changed.q += kStep * MovesOf(recording_);
+    return Derivative(changed);
+  }
+
+  /// Of all joints: a robot that came to rest later than it was measured.
+  void TryUnfinished(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
+    Try(equations, covariance, ByMoves(), {MakeTrial({.kind = FaultKind::kUnfinished})}, false);
+  }
+
+  void Measure(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
+               const RecordingFault& fault) {
+    const Blocks derivative = fault.coordinate >= 0                  ? ByPositions(fault.coordinate)
+                              : fault.kind == FaultKind::kUnfinished ? ByMoves()
+                                                                     : ByCameras(fault);
+    found_ = Measured(equations, covariance, derivative, {MakeTrial(fault)});
+  }
+
+  void TryJoint(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
+                int coordinate) {
+    const Blocks derivative = ByPositions(coordinate);
+    const std::vector<Joint>& joints = result_.model.tree.joints;
+    const int joint = result_.model.tree.coordinate_joint[coordinate];
+    const bool slides = joints[joint].type == JointType::kPrismatic;
+    RecordingFault fault;
+    fault.coordinate = coordinate;
+    RecordingFault unfinished = fault;
+    unfinished.kind = FaultKind::kUnfinished;
+    std::vector<Trial> of_moves = {MakeTrial(fault), MakeTrial(unfinished)};
+    for (const int trial : TrialsThatMove(recording_, coordinate)) {
+      of_moves.push_back(MakeTrial({.coordinate = coordinate, .trial = trial}));
+    }
+    Try(equations, covariance, derivative, of_moves, slides);
+    if (HasMotion(recording_)) {
+      RecordingFault lag = fault;
+      lag.kind = FaultKind::kJointLag;
+      Try(equations, covariance, derivative, {MakeTrial(lag)}, slides);
+    }
+    TryOffsets(equations, covariance, derivative, fault, slides);
+  }
+
+  void TryMotor(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
+                const MotorIndex& motor) {
+    const RobotTree& tree = result_.model.tree;
+    const Linkage& linkage = tree.linkages[static_cast<std::size_t>(motor.linkage)];
+    Recording changed = recording_;
+    const std::vector<int> joints = CoordinatesOf(tree, linkage);
+    for (int i = 0; i < recording_.posture_count(); ++i) {
+      const Eigen::VectorXd at = recording_.q(i, joints).transpose();
+      const auto motors = MotorPositions(tree, linkage, at);
+      if (!motors) continue;
+      if (const auto closure = CloseLinkage(tree, linkage, *motors, {}, at)) {
+        changed.q(i, joints) += kStep * closure->by_motors.col(motor.rod).transpose();
+      }
+    }
+    RecordingFault fault;
+    fault.coordinate = motor.rod;
+    fault.linkage = motor.linkage;
+    TryOffsets(equations, covariance, Derivative(changed), fault,
+               linkage.rods[static_cast<std::size_t>(motor.rod)].actuator);
+  }
+
+  /// Of a joint or motor, by the derivative of its position.
+  void TryOffsets(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
+                  const Blocks& derivative, const RecordingFault& of, bool slides) {
+    std::vector<Trial> trials;
+    const auto add = [&](int trial, int posture, int end = 0) {
+      RecordingFault fault = of;
+      fault.kind = FaultKind::kJointOffset;
+      fault.trial = trial;
+      fault.posture = posture;
+      fault.end = end;
+      trials.push_back(MakeTrial(fault));
+    };
+    const auto try_all = [&] {
+      Try(equations, covariance, derivative, trials, slides);
+      trials.clear();
+    };
+    const int count = recording_.posture_count();
+    const int stride = std::max(1, count / kSplits);
+    const auto add_split = [&](int split) {
+      // Nearly all postures, or nearly none: an error of the robot, or one bad posture.
+      if (split < kLeastSide || split > count - kLeastSide) return;
+      add(-1, split);
+    };
+    const auto best_since = [&](std::size_t before) {
+      return *std::max_element(
+          found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end(),
+          [](const RecordingFault& a, const RecordingFault& b) { return a.share < b.share; });
+    };
+    // Every so many splits, and then all between the best of them and its neighbours.
+    const auto try_splits = [&](int begin, int end, int step, const auto& add_at) {
+      const std::size_t before = found_.size();
+      for (int split = begin + step; split < end; split += step) add_at(split);
+      try_all();
+      if (found_.size() == before) return;
+      const int around = best_since(before).posture;
+      for (int off = 1; off < step; ++off) {
+        add_at(around - off);
+        add_at(around + off);
+      }
+      try_all();
+    };
+    try_splits(0, count, stride, add_split);
+    if (recording_.trials.empty()) {
+      TryStretches(count, stride, add, try_all, best_since);
+      if (of.linkage < 0) {
+        RecordingFault drift = of;
+        drift.kind = FaultKind::kJointDrift;
+        trials.push_back(MakeTrial(drift));
+        try_all();
+      }
+    }
+    for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
+      const auto first = std::find(recording_.trial.begin(), recording_.trial.end(), trial);
+      if (first == recording_.trial.end()) continue;
+      const int begin = static_cast<int>(first - recording_.trial.begin());
+      const int end = begin + static_cast<int>(std::count(first, recording_.trial.end(), trial));
+      add(trial, begin);
+      try_all();
+      if (end == count) continue;  // to the end of the trial is to the end of the recording
+      try_splits(begin, end, std::max(1, (end - begin) / kTrialSplits), [&](int split) {
+        if (split < begin + kLeastSide || split > end - kLeastSide) return;
+        add(trial, split);
+      });
+    }
+  }
+
+  /// An offset from a posture to another one: a joint that slipped and was set right again.
+  template <typename Add, typename TryAll, typename BestSince>
+  void TryStretches(int count, int stride, const Add& add, const TryAll& try_all,
+                    const BestSince& best_since) const {
+    const auto add_stretch = [&](int begin, int end) {
+      const bool long_enough = end - begin >= kLeastSide;
+      if (begin >= kLeastSide && end <= count - kLeastSide && long_enough) add(-1, begin, end);
+    };
+    std::size_t before = found_.size();
+    for (int begin = stride; begin < count; begin += stride) {
+      for (int end = begin + stride; end < count; end += stride) add_stretch(begin, end);
+    }
+    try_all();
+    if (found_.size() == before) return;
+    for (const bool of_end : {false, true, false, true}) {
+      const RecordingFault around = best_since(before);
+      before = found_.size();
+      for (int off = -stride; off <= stride; ++off) {
+        add_stretch(around.posture + (of_end ? 0 : off), around.end + (of_end ? off : 0));
+      }
+      try_all();
+      if (found_.size() == before) return;
+    }
+  }
+
+  /// Of the cameras' space, and of one trial. A scale of all trials is what a robot with other
+  /// lengths shows as well.
+  void TryScale(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
+    std::vector<RecordingFault> of_cameras = {{.kind = FaultKind::kCameraBend}};
+    for (int axis = 0; axis < 3; ++axis) {
+      of_cameras.push_back({.kind = FaultKind::kCameraAxis, .axis = axis});
+      of_cameras.push_back(
+          {.kind = FaultKind::kCameraShear, .axis = axis, .by_axis = (axis + 1) % 3});
+    }
+    for (const RecordingFault& fault : of_cameras) {
+      Try(equations, covariance, ByCameras(fault), {MakeTrial(fault)}, false);
+    }
+    if (recording_.trials.size() < 2) return;
+    std::vector<Trial> trials;
+    for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
+      trials.push_back(MakeTrial({.kind = FaultKind::kCameraScale, .trial = trial}));
+    }
+    Try(equations, covariance, ByCameras({.kind = FaultKind::kCameraScale}), trials, false);
+  }
+
+  const CalibrationResult& result_;
+  const Recording& recording_;
+  const CalibrationOptions& options_;
+  Selection selection_;
+  Fit fit_;
+  std::vector<int> posture_;  // by residual block; -1: a prior
+  Blocks at_;
+  double squares_ = 0.0;
+  std::vector<RecordingFault> found_;
+};
+
+}  // namespace
+
+std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
+                                                const Recording& recording,
+                                                const CalibrationOptions& options) {
+  return FaultSearch(result, recording, options).found();
+}
+
+RecordingFault MeasureFault(const RecordingFault& fault, const CalibrationResult& result,
+                            const Recording& recording, const CalibrationOptions& options) {
+  return FaultSearch(result, recording, options, &fault).found().front();
+}
+
+}  // namespace elastocal
