@@ -2,6 +2,7 @@
 // The generalized Jacobian (eq. 4) against central differences and against MuJoCo. Seconds a
 // posture; every pair is measured in one run, in turns.
 #include <cstring>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -75,27 +76,27 @@ void CentralDifferences(const ErrorModel& model, const std::vector<Eigen::Vector
   benchmark::DoNotOptimize(jacobians.data());
 }
 
-void LegAgainstCentralDifferencesOfOnePosture(benchmark::State& state) {
+using Differences = std::function<void(const ErrorModel&, const std::vector<Eigen::VectorXd>&)>;
+
+void CompareLeg(benchmark::State& state, const Differences& differences) {
   const ErrorModel model = Leg(Talos());
   const std::vector<Eigen::VectorXd> postures = RandomPostures(model.tree);
   const Geometry geometry = ApplyErrors(model, NominalErrors(model));
   GeneralizedJacobian jacobian(model);
   CompareInTurns(
       state, kPostures, [&] { EvaluateAll(jacobian, geometry, postures); },
-      [&] {
-        for (const Eigen::VectorXd& q : postures) CentralDifferences(model, {q});
-      });
+      [&] { differences(model, postures); });
+}
+
+void LegAgainstCentralDifferencesOfOnePosture(benchmark::State& state) {
+  CompareLeg(state, [](const ErrorModel& model, const std::vector<Eigen::VectorXd>& postures) {
+    for (const Eigen::VectorXd& q : postures) CentralDifferences(model, {q});
+  });
 }
 BENCHMARK(LegAgainstCentralDifferencesOfOnePosture);
 
 void LegAgainstCentralDifferencesOfManyPostures(benchmark::State& state) {
-  const ErrorModel model = Leg(Talos());
-  const std::vector<Eigen::VectorXd> postures = RandomPostures(model.tree);
-  const Geometry geometry = ApplyErrors(model, NominalErrors(model));
-  GeneralizedJacobian jacobian(model);
-  CompareInTurns(
-      state, kPostures, [&] { EvaluateAll(jacobian, geometry, postures); },
-      [&] { CentralDifferences(model, postures); });
+  CompareLeg(state, CentralDifferences);
 }
 BENCHMARK(LegAgainstCentralDifferencesOfManyPostures);
 

@@ -33,9 +33,14 @@ Names NamesOf(const Things& things) {
   return names;
 }
 
-}  // namespace
+/// Of all entries of q.
+auto LimitsOf(double JointLimits::*limit) {
+  return [limit](const RobotTree& r) {
+    return ByCoordinate(r, [limit](const JointLimits& limits) { return limits.*limit; });
+  };
+}
 
-void AddRobot(py::module_& module) {
+void AddTree(py::module_& module) {
   py::class_<RobotTree>(module, "Robot", "A nominal robot, as its URDF describes it.")
       .def_property_readonly(
           "name", [](const RobotTree& r) { return r.name; }, "As in the URDF.")
@@ -43,34 +48,20 @@ void AddRobot(py::module_& module) {
                              "Joints that are entries of q, in its order; mimic joints are not.")
       .def_property_readonly(
           "links", [](const RobotTree& r) { return NamesOf(r.links); }, "The root link first.")
-      .def_property_readonly(
-          "lower",
-          [](const RobotTree& r) {
-            return ByCoordinate(r, [](const JointLimits& limits) { return limits.lower; });
-          },
-          "Least positions (joints,), rad or m; -inf without a limit.")
-      .def_property_readonly(
-          "upper",
-          [](const RobotTree& r) {
-            return ByCoordinate(r, [](const JointLimits& limits) { return limits.upper; });
-          },
-          "Largest positions (joints,), rad or m; inf without a limit.")
-      .def_property_readonly(
-          "velocity",
-          [](const RobotTree& r) {
-            return ByCoordinate(r, [](const JointLimits& limits) { return limits.velocity; });
-          },
-          "Largest speeds (joints,), rad/s or m/s.")
-      .def_property_readonly(
-          "effort",
-          [](const RobotTree& r) {
-            return ByCoordinate(r, [](const JointLimits& limits) { return limits.effort; });
-          },
-          "Largest torques (joints,), N.m, or forces, N.")
+      .def_property_readonly("lower", LimitsOf(&JointLimits::lower),
+                             "Least positions (joints,), rad or m; -inf without a limit.")
+      .def_property_readonly("upper", LimitsOf(&JointLimits::upper),
+                             "Largest positions (joints,), rad or m; inf without a limit.")
+      .def_property_readonly("velocity", LimitsOf(&JointLimits::velocity),
+                             "Largest speeds (joints,), rad/s or m/s.")
+      .def_property_readonly("effort", LimitsOf(&JointLimits::effort),
+                             "Largest torques (joints,), N.m, or forces, N.")
       .def("poses", LinkPoses, "q"_a,
            "Poses (4, 4) of all links in the root link's frame, by name, without deflection. q: "
            "(joints,), rad or m, or a dict of joints, the others being at 0.");
+}
 
+void AddProject(py::module_& module) {
   py::class_<Project>(module, "Project", "A project file with its robot.")
       .def("__repr__",
            [](const Project& project) {
@@ -102,6 +93,13 @@ void AddRobot(py::module_& module) {
       .def_property_readonly(
           "rest", [](const Project& p) { return p.motion.rest; },
           "Posture of rest (joints,), rad or m: of joints that a posture leaves out.");
+}
+
+}  // namespace
+
+void AddRobot(py::module_& module) {
+  AddTree(module);
+  AddProject(module);
 }
 
 }  // namespace elastocal::python

@@ -68,15 +68,7 @@ class ArmWithCamera : public ArmWithTracker {
     for (const Quantity& quantity : model.setup.quantities) {
       truth.quantities.push_back({quantity.origin, random.NormalVector(quantity.size(), 5e-3)});
     }
-    Observations seen;
-    seen.files = {"table.csv"};
-    seen.q = q_;
-    for (int i = 0; i < kPostures; ++i) {
-      seen.postures.push_back({0, i + 2});
-      for (int k = 0; k < static_cast<int>(model.setup.instruments.size()); ++k) {
-        seen.all.push_back({i, k, {}, {}});
-      }
-    }
+    Observations seen = WithEveryInstrument(model, q_);
     const auto sights = SightsOf(model, seen, truth, ObservedLoads(model, seen, truth.robot));
     for (std::size_t i = 0; i < sights.size(); ++i) {
       Observation& of = seen.all[i];

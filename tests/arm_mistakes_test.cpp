@@ -234,14 +234,7 @@ class ArmWithTwoBodies : public ArmWithTracker {
     for (const Quantity& quantity : model_.setup.quantities) {
       truth.quantities.push_back({quantity.origin, Eigen::VectorXd::Zero(quantity.size())});
     }
-    seen_.files = {"table.csv"};
-    seen_.q = q_;
-    for (int i = 0; i < kPostures; ++i) {
-      seen_.postures.push_back({0, i + 2});
-      for (int k = 0; k < static_cast<int>(model_.setup.instruments.size()); ++k) {
-        seen_.all.push_back({i, k, {}, {}});
-      }
-    }
+    seen_ = WithEveryInstrument(model_, q_);
     const auto sights = SightsOf(model_, seen_, truth, ObservedLoads(model_, seen_, truth.robot));
     for (std::size_t i = 0; i < sights.size(); ++i) {
       Observation& of = seen_.all[i];

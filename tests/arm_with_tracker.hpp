@@ -19,6 +19,21 @@
 
 namespace elastocal {
 
+/// A table of these postures in which every instrument of the model shows something, which is still
+/// to be filled in.
+inline Observations WithEveryInstrument(const ObservedRobot& model, const Eigen::MatrixXd& q) {
+  Observations seen;
+  seen.files = {"table.csv"};
+  seen.q = q;
+  for (int i = 0; i < static_cast<int>(q.rows()); ++i) {
+    seen.postures.push_back({0, i + 2});
+    for (int k = 0; k < static_cast<int>(model.setup.instruments.size()); ++k) {
+      seen.all.push_back({i, k, {}, {}});
+    }
+  }
+  return seen;
+}
+
 /// A fixed arm with errors whose tool a laser tracker sees in 30 postures.
 class ArmWithTracker : public testing::Test {
  protected:

@@ -141,11 +141,9 @@ std::string WriteTable(const ScratchFolder& scratch, const Project& project,
 
 // No gear is made so badly: the column has another unit or another gear.
 TEST_F(Program, AWrongGainInATableIsNamedAndCorrectedOnRequest) {
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
-  Recording table = MakeSyntheticRecording(model, truth_, {.postures = 40, .seed = 5});
-  table.q.col(project.tree.joints[Size(FindJoint(project.tree, "elbow_joint"))].coordinate) *= 1.02;
-  const std::string file = WriteTable(scratch_, project, table);
+  Recording table = MakeSyntheticRecording(model_, truth_, {.postures = 40, .seed = 5});
+  table.q.col(Coordinate("elbow_joint")) *= 1.02;
+  const std::string file = WriteTable(scratch_, arm_, table);
   const ProgramResult found = Calibrate(project_, file);
   EXPECT_EQ(found.exit_code, 4) << found.out;
   const std::string name = "--accept gain:elbow_joint=1.0";
@@ -160,18 +158,16 @@ TEST_F(Program, AWrongGainInATableIsNamedAndCorrectedOnRequest) {
 // No residual shows a wrong scale of the cameras; noise that all markers of a body share is no
 // fault with a name.
 TEST_F(Program, AVerdictSaysWhatItRestsOn) {
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
   Random random(1);
   Eigen::VectorXd truth = truth_;  // whose links tell how far they err themselves
-  for (int i = 0; i < model.parameter_count(); ++i) {
-    const Parameter& parameter = model.parameters[static_cast<std::size_t>(i)];
+  for (int i = 0; i < model_.parameter_count(); ++i) {
+    const Parameter& parameter = model_.parameters[static_cast<std::size_t>(i)];
     const bool length = parameter.joint >= 0 && GroupOf(parameter.kind) == PriorGroup::kLengths;
     if (length) truth[i] += random.Normal(5e-3);
   }
-  Recording recording = MakeSyntheticRecording(model, truth, {.postures = 30, .seed = 5});
+  Recording recording = MakeSyntheticRecording(model_, truth, {.postures = 30, .seed = 5});
   const auto said = [&](const std::string& of_project) {
-    return Calibrate(of_project, WriteTable(scratch_, project, recording), "--kfold 0").out;
+    return Calibrate(of_project, WriteTable(scratch_, arm_, recording), "--kfold 0").out;
   };
   const std::string scale = "The scale of the cameras is taken as right";
   const std::string told = said(project_);  // by the travel of the rail
@@ -199,10 +195,8 @@ TEST_F(Program, AVerdictSaysWhatItRestsOn) {
 }
 
 TEST_F(Program, FewPosturesAreJudgedWhereTheyAreLeftOut) {
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
   const std::string file = WriteTable(
-      scratch_, project, MakeSyntheticRecording(model, truth_, {.postures = 6, .seed = 5}));
+      scratch_, arm_, MakeSyntheticRecording(model_, truth_, {.postures = 6, .seed = 5}));
   const ProgramResult result = Calibrate(project_, file, "");
   const auto summary = nlohmann::json::parse(ReadFile(out_ + "/summary.json"));
   EXPECT_EQ(summary["deployed"]["judged_on"], "held-out postures") << result.out << result.err;
@@ -211,13 +205,11 @@ TEST_F(Program, FewPosturesAreJudgedWhereTheyAreLeftOut) {
 
 // Just as many equations as the arm needs: without some of the postures they are too few.
 TEST_F(Program, FoldsThatNobodyAskedForAreLeftOutWhereTheyAreTooSmall) {
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
   const int unknowns =
-      static_cast<int>(FindBaseParameters(model, project.identifiability).kept.size());
-  const int postures = unknowns / (3 * model.marker_count()) + 1;
+      static_cast<int>(FindBaseParameters(model_, arm_.identifiability).kept.size());
+  const int postures = unknowns / (3 * model_.marker_count()) + 1;
   const std::string file = WriteTable(
-      scratch_, project, MakeSyntheticRecording(model, truth_, {.postures = postures, .seed = 5}));
+      scratch_, arm_, MakeSyntheticRecording(model_, truth_, {.postures = postures, .seed = 5}));
   const ProgramResult usual = Calibrate(project_, file, "");
   EXPECT_NE(usual.exit_code, 3) << usual.err;
   EXPECT_NE(usual.err.find("not cross-validated: "), std::string::npos) << usual.err;
@@ -225,17 +217,15 @@ TEST_F(Program, FoldsThatNobodyAskedForAreLeftOutWhereTheyAreTooSmall) {
 }
 
 TEST_F(Program, JointsThatStoodStillAreNamed) {
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
-  const int turret = project.tree.joints[Size(FindJoint(project.tree, "turret_joint"))].coordinate;
-  Recording table = MakeSyntheticRecording(model, truth_, {.postures = 20, .seed = 5});
-  const Geometry geometry = ApplyErrors(model, truth_);
+  const int turret = Coordinate("turret_joint");
+  Recording table = MakeSyntheticRecording(model_, truth_, {.postures = 20, .seed = 5});
+  const Geometry geometry = ApplyErrors(model_, truth_);
   table.q.col(turret).setConstant(0.3);
   for (int i = 0; i < table.posture_count(); ++i) {
     table.markers.row(i) =
-        MarkerPositions(model, geometry, table.q.row(i).transpose()).reshaped().transpose();
+        MarkerPositions(model_, geometry, table.q.row(i).transpose()).reshaped().transpose();
   }
-  const ProgramResult result = Calibrate(project_, WriteTable(scratch_, project, table));
+  const ProgramResult result = Calibrate(project_, WriteTable(scratch_, arm_, table));
   EXPECT_NE(result.err.find("turret_joint stood still in all postures"), std::string::npos)
       << result.err;
   EXPECT_EQ(Calibrate(project_, recording_).err.find("stood still"), std::string::npos);
@@ -272,26 +262,24 @@ TEST_F(Program, ARobotWithoutLegsHasNoTableOfLegs) {
 // A joint that rests while others are measured looks frozen where these are wrong: without their
 // postures, all is well.
 TEST_F(Program, AJointAtRestIsNotCalledFrozenForAnothersSign) {
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
   const auto coordinate = [&](const char* name) {
-    return project.tree.joints[static_cast<std::size_t>(FindJoint(project.tree, name))].coordinate;
+    return arm_.tree.joints[static_cast<std::size_t>(FindJoint(arm_.tree, name))].coordinate;
   };
   constexpr int kHalf = 25;
-  Recording recording = MakeSyntheticRecording(model, truth_, {.postures = 2 * kHalf, .seed = 4});
+  Recording recording = MakeSyntheticRecording(model_, truth_, {.postures = 2 * kHalf, .seed = 4});
   const int elbow = coordinate("elbow_joint"), rail = coordinate("rail_joint");
   const int turret = coordinate("turret_joint");
   recording.q.col(elbow).head(kHalf).setZero();
   recording.q.col(rail).tail(kHalf).setZero();
   recording.q.col(turret).tail(kHalf).setZero();
-  const Geometry geometry = ApplyErrors(model, truth_);
+  const Geometry geometry = ApplyErrors(model_, truth_);
   for (int i = 0; i < 2 * kHalf; ++i) {
     recording.markers.row(i) =
-        MarkerPositions(model, geometry, recording.q.row(i).transpose()).reshaped().transpose();
+        MarkerPositions(model_, geometry, recording.q.row(i).transpose()).reshaped().transpose();
   }
   recording.q.col(elbow) *= -1.0;
   const std::string table = (scratch_.path() / "sign.csv").string();
-  WritePostureTable(table, recording, project.tree);
+  WritePostureTable(table, recording, arm_.tree);
   const ProgramResult named = Calibrate(project_, table);
   EXPECT_EQ(named.exit_code, 4) << named.out << named.err;
   EXPECT_NE(named.out.find("--accept sign:elbow_joint corrects it"), std::string::npos)
@@ -301,12 +289,10 @@ TEST_F(Program, AJointAtRestIsNotCalledFrozenForAnothersSign) {
 
 // What a wrong scale of the cameras changes most is the way of a sliding joint.
 TEST_F(Program, AGainOfASlidingJointMayBeTheScaleOfTheCameras) {
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
-  Recording recording = MakeSyntheticRecording(model, truth_, {.postures = 40, .seed = 4});
+  Recording recording = MakeSyntheticRecording(model_, truth_, {.postures = 40, .seed = 4});
   recording.markers *= 1.01;
   const std::string table = (scratch_.path() / "scaled.csv").string();
-  WritePostureTable(table, recording, project.tree);
+  WritePostureTable(table, recording, arm_.tree);
   const ProgramResult result = Calibrate(project_, table);
   EXPECT_EQ(result.exit_code, 4) << result.out << result.err;
   EXPECT_NE(result.out.find("the cameras"), std::string::npos) << result.out;

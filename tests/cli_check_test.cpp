@@ -71,11 +71,9 @@ TEST_F(Program, CheckTellsTheLastJointByMarkersThatStayed) {
   EXPECT_EQ(tool(json)["same"], true);
   EXPECT_TRUE(json["not_told"].empty()) << json["not_told"];
 
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
   Eigen::VectorXd anew = truth_;
-  anew[FindParameter(model.parameters, "marker.TOOL_1.x")] += 2e-3;
-  anew[FindParameter(model.parameters, "marker.TOOL_2.y")] -= 2e-3;
+  anew[FindParameter(model_.parameters, "marker.TOOL_1.x")] += 2e-3;
+  anew[FindParameter(model_.parameters, "marker.TOOL_2.y")] -= 2e-3;
   EXPECT_TRUE(check("anew", anew).starts_with("Unchanged"));
   json = nlohmann::json::parse(ReadFile(file));
   EXPECT_EQ(tool(json)["same"], false);
@@ -108,15 +106,13 @@ TEST_F(Program, CheckKnowsMarkersThatTheProjectNowHasElsewhere) {
 // hold.
 TEST_F(Program, CheckSaysChangedWhereTooFewPosturesTellTheJoint) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
   Eigen::VectorXd truth = truth_;
-  truth[FindParameter(model.parameters, "elbow_joint.theta")] += 0.05;
-  Recording few = MakeSyntheticRecording(model, truth, {.postures = 4, .seed = 5});
+  truth[FindParameter(model_.parameters, "elbow_joint.theta")] += 0.05;
+  Recording few = MakeSyntheticRecording(model_, truth, {.postures = 4, .seed = 5});
   const int seen = few.marker_count() - 1;  // on the hand
   for (int m = 0; m < seen; ++m) few.markers.middleCols(3 * m, 3).setConstant(std::nan(""));
   const std::filesystem::path table = scratch_.path() / "few.csv";
-  WritePostureTable(table, few, project.tree);
+  WritePostureTable(table, few, arm_.tree);
   const std::string file = (scratch_.path() / "check.json").string();
   const ProgramResult result =
       RunProgram("check " + project_ + " --calibration " + out_ + " --recording " + table.string() +
@@ -129,17 +125,15 @@ TEST_F(Program, CheckSaysChangedWhereTooFewPosturesTellTheJoint) {
 // No joint that has moved explains these: "unchanged" would be the worst of answers.
 TEST_F(Program, CheckAndValidateSayWhatIsWrongWithARecording) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
-  const int elbow = project.tree.joints[Size(FindJoint(project.tree, "elbow_joint"))].coordinate;
-  Recording reversed = MakeSyntheticRecording(model, truth_, {.postures = 12, .seed = 5});
+  const int elbow = Coordinate("elbow_joint");
+  Recording reversed = MakeSyntheticRecording(model_, truth_, {.postures = 12, .seed = 5});
   Recording shifted = reversed, shuffled = reversed;
   shifted.markers.topRows(11) = reversed.markers.bottomRows(11);  // of the next posture
   shuffled.markers = reversed.markers.colwise().reverse().eval();
   reversed.q.col(elbow) *= -1.0;
   const std::string json = (scratch_.path() / "found.json").string();
   const auto run = [&](const std::string& command, const Recording& recording) {
-    WritePostureTable(scratch_.path() / "wrong.csv", recording, project.tree);
+    WritePostureTable(scratch_.path() / "wrong.csv", recording, arm_.tree);
     const ProgramResult result =
         RunProgram(command + " " + project_ + " --calibration " + out_ + " --recording " +
                    (scratch_.path() / "wrong.csv").string() + " --json " + json);
@@ -166,13 +160,11 @@ TEST_F(Program, CheckAndValidateSayWhatIsWrongWithARecording) {
 // One bad posture of twelve.
 TEST_F(Program, CheckNamesNoJointBesideErrorsThatNoneExplains) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
-  const int elbow = project.tree.joints[Size(FindJoint(project.tree, "elbow_joint"))].coordinate;
-  Recording bad = MakeSyntheticRecording(model, truth_, {.postures = 12, .seed = 5});
+  const int elbow = Coordinate("elbow_joint");
+  Recording bad = MakeSyntheticRecording(model_, truth_, {.postures = 12, .seed = 5});
   bad.q(4, elbow) += 0.05;
   const std::filesystem::path table = scratch_.path() / "today.csv";
-  WritePostureTable(table, bad, project.tree);
+  WritePostureTable(table, bad, arm_.tree);
   const std::string file = (scratch_.path() / "check.json").string();
   const ProgramResult result = RunProgram("check " + project_ + " --calibration " + out_ +
                                           " --recording " + table.string() + " --json " + file);
@@ -189,16 +181,14 @@ TEST_F(Program, CheckNamesNoJointBesideErrorsThatNoneExplains) {
 // The gain of a joint and the scale of the cameras look like several joints that moved.
 TEST_F(Program, CheckNamesAGainAndAScale) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
-  const int elbow = project.tree.joints[Size(FindJoint(project.tree, "elbow_joint"))].coordinate;
-  const Recording sound = MakeSyntheticRecording(model, truth_, {.postures = 12, .seed = 5});
+  const int elbow = Coordinate("elbow_joint");
+  const Recording sound = MakeSyntheticRecording(model_, truth_, {.postures = 12, .seed = 5});
   Recording gain = sound, scale = sound;
   gain.q.col(elbow) *= 1.03;
   scale.markers *= 1.002;
   const auto expect = [&](const Recording& recording, const std::string& begin, double size) {
     const std::filesystem::path table = scratch_.path() / "today.csv";
-    WritePostureTable(table, recording, project.tree);
+    WritePostureTable(table, recording, arm_.tree);
     const std::string file = (scratch_.path() / "check.json").string();
     const std::string words = "check " + project_ + " --calibration " + out_ + " --recording " +
                               table.string() + " --json " + file;

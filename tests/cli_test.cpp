@@ -82,6 +82,7 @@ TEST_F(Program, WrongUsageIsSaidInTheProgramsOwnWords) {
     const ProgramResult result = RunProgram(words);
     EXPECT_EQ(result.exit_code, 2) << words;
     EXPECT_NE(result.err.find(message), std::string::npos) << words << ": " << result.err;
+    EXPECT_TRUE(result.err.starts_with("elastocal: error: ")) << words << ": " << result.err;
   }
 }
 
@@ -124,13 +125,11 @@ TEST_F(Program, QuietPrintsNothing) {
 
 TEST_F(Program, ValidateAppliesACalibrationToAnotherRecording) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
-  ErrorModel elsewhere = model;
+  ErrorModel elsewhere = model_;
   elsewhere.T_ref_waist = Transform(Eigen::Translation3d(0.3, 0.2, -0.1)) * RotY(1.0);
   WritePostureTable(scratch_.path() / "other.csv",
                     MakeSyntheticRecording(elsewhere, truth_, {.postures = 25, .seed = 9}),
-                    project.tree);
+                    arm_.tree);
   const std::string json_file = (scratch_.path() / "validate.json").string();
   const ProgramResult result =
       RunProgram("validate " + project_ + " --calibration " + out_ + " --recording " +

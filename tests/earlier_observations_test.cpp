@@ -17,12 +17,26 @@ EarlierEstimate EarlierOf(const ObservedRobot& model, const ObservationFit& fit)
   return earlier;
 }
 
-TEST(EarlierObservations, AnEarlierFitAsThePriorIsAsGoodAsItsObservations) {
+/// A biped of rigid joints that touches a table so many times, with errors and noise.
+struct TouchingBiped {
+  TouchingBiped(int touches, std::uint64_t seed)
+      : random(seed),
+        truth(RandomTruth(model, 1, random)),
+        seen(SimulateTouches(model, truth, touches, 1, Eigen::Vector3d::Zero(), random)) {
+    AddNoise(model, seen, random);
+  }
+
   const ObservedRobot model = MakeTouchingBiped({"*.compliance_*"});
-  Random random(17);
-  const ObservedValues truth = RandomTruth(model, 1, random);
-  Observations all = SimulateTouches(model, truth, 50, 1, Eigen::Vector3d::Zero(), random);
-  AddNoise(model, all, random);
+  Random random;
+  const ObservedValues truth;
+  Observations seen;
+};
+
+TEST(EarlierObservations, AnEarlierFitAsThePriorIsAsGoodAsItsObservations) {
+  const TouchingBiped biped(50, 17);
+  const ObservedRobot& model = biped.model;
+  const ObservedValues& truth = biped.truth;
+  const Observations& all = biped.seen;
   std::vector<int> first, then;
   for (int i = 0; i < all.posture_count(); ++i) (i < 40 ? first : then).push_back(i);
   // All but the robot is known: a fit hands on nothing else.
@@ -51,11 +65,9 @@ TEST(EarlierObservations, AnEarlierFitAsThePriorIsAsGoodAsItsObservations) {
 }
 
 TEST(EarlierObservations, WhatTheDataSayOfTheRobotDoesNotDependOnThePrior) {
-  const ObservedRobot model = MakeTouchingBiped({"*.compliance_*"});
-  Random random(18);
-  const ObservedValues truth = RandomTruth(model, 1, random);
-  Observations seen = SimulateTouches(model, truth, 40, 1, Eigen::Vector3d::Zero(), random);
-  AddNoise(model, seen, random);
+  const TouchingBiped biped(40, 18);
+  const ObservedRobot& model = biped.model;
+  const Observations& seen = biped.seen;
   const ObservationFit fit = EstimateObserved(model, seen, {}).fit;
   ObservedRobot again = model;
   again.earlier = EarlierOf(model, fit);

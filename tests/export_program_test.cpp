@@ -271,13 +271,11 @@ TEST_F(Program, ExportsReplaceNoInputOfTheCalibration) {
 
 TEST_F(Program, OnlyWhatHeldOutPosturesSayHelpsIsExported) {
   // Errors of some joints alone: the others' estimates are noise.
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
-  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
-  truth[FindParameter(model.parameters, "elbow_joint.theta")] = 0.01;
-  truth[FindParameter(model.parameters, "turret_joint.alpha")] = -0.008;
-  WritePostureTable(recording_, MakeSyntheticRecording(model, truth, {.postures = 40, .seed = 4}),
-                    project.tree);
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
+  truth[FindParameter(model_.parameters, "elbow_joint.theta")] = 0.01;
+  truth[FindParameter(model_.parameters, "turret_joint.alpha")] = -0.008;
+  WritePostureTable(recording_, MakeSyntheticRecording(model_, truth, {.postures = 40, .seed = 4}),
+                    arm_.tree);
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const std::string file = (scratch_.path() / "arm.yaml").string();
   const ProgramResult result =
@@ -306,16 +304,14 @@ TEST_F(Program, OnlyWhatHeldOutPosturesSayHelpsIsExported) {
 // The zero of the last joint is told by measured places of markers alone: without them it is in
 // common with these places, and no gain.
 TEST_F(Program, AZeroThatMeasuredPlacesTellIsAGain) {
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
   const std::string last = "flange_joint";
-  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
-  truth[FindParameter(model.parameters, last + ".theta")] = 0.02;
-  truth[FindParameter(model.parameters, "elbow_joint.theta")] = 0.01;
-  WritePostureTable(recording_, MakeSyntheticRecording(model, truth, {.postures = 40, .seed = 4}),
-                    project.tree);
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
+  truth[FindParameter(model_.parameters, last + ".theta")] = 0.02;
+  truth[FindParameter(model_.parameters, "elbow_joint.theta")] = 0.01;
+  WritePostureTable(recording_, MakeSyntheticRecording(model_, truth, {.postures = 40, .seed = 4}),
+                    arm_.tree);
   std::vector<MarkerMeasurement> places;
-  for (const Marker& marker : model.markers) {
+  for (const Marker& marker : model_.markers) {
     places.push_back({marker.name, marker.p_link_marker, 0.1e-3});
   }
   const std::string table = scratch_.Write("places.csv", FormatMarkerPlaces(places));
@@ -335,18 +331,16 @@ TEST_F(Program, AZeroThatMeasuredPlacesTellIsAGain) {
 // Beside measured places, validate shows a zero that no marker tells; diagnose takes those of the
 // calibration.
 TEST_F(Program, ValidateAndDiagnoseKnowMeasuredPlaces) {
-  const Project project = ReadProject(project_);
-  const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
-  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
-  truth[FindParameter(model.parameters, "flange_joint.theta")] = 0.02;
-  truth[FindParameter(model.parameters, "elbow_joint.theta")] = 0.01;
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
+  truth[FindParameter(model_.parameters, "flange_joint.theta")] = 0.02;
+  truth[FindParameter(model_.parameters, "elbow_joint.theta")] = 0.01;
   const std::string other = (scratch_.path() / "other.csv").string();
-  WritePostureTable(recording_, MakeSyntheticRecording(model, truth, {.postures = 40, .seed = 4}),
-                    project.tree);
-  WritePostureTable(other, MakeSyntheticRecording(model, truth, {.postures = 40, .seed = 5}),
-                    project.tree);
+  WritePostureTable(recording_, MakeSyntheticRecording(model_, truth, {.postures = 40, .seed = 4}),
+                    arm_.tree);
+  WritePostureTable(other, MakeSyntheticRecording(model_, truth, {.postures = 40, .seed = 5}),
+                    arm_.tree);
   std::vector<MarkerMeasurement> places;
-  for (const Marker& marker : model.markers) {
+  for (const Marker& marker : model_.markers) {
     places.push_back({marker.name, marker.p_link_marker, 5e-6});  // more than the data say
   }
   const std::string table =

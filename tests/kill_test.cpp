@@ -21,6 +21,7 @@
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/math/random.hpp"
+#include "tests/arm_posture.hpp"
 #include "tests/program_fixture.hpp"
 
 namespace elastocal {
@@ -28,15 +29,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Seconds = std::chrono::duration<double>;
-
-constexpr const char* kTalosPostures = R"(
-robot: talos
-chains:
-  - name: arm_left
-    support: [left_sole_link, right_sole_link]
-    postures:
-      - {arm_left_1_joint: -0.4, arm_left_2_joint: 0.6, arm_left_4_joint: -1.2}
-)";
 
 int Kills() {
   const char* given = std::getenv("ELASTOCAL_KILLS");
@@ -178,8 +170,8 @@ TEST_F(Killed, Design) {
 
 TEST_F(Killed, Plan) {
   const std::string end = " -o FOLDER/motion.csv --trajectory FOLDER/trajectory.yaml";
-  const std::string first = scratch_.Write("first_input.yaml", kTalosPostures);
-  const std::string second = scratch_.Write("second_input.yaml", kTalosPostures);
+  const std::string first = scratch_.Write("first_input.yaml", kPostureOfArm);
+  const std::string second = scratch_.Write("second_input.yaml", kPostureOfArm);
   TryKills("plan " + talos_ + " --postures " + first + end,
            "plan " + talos_ + " --rest-s 1.5 --postures " + second + end);
 }

@@ -8,6 +8,7 @@
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/motion_file.hpp"
+#include "tests/arm_posture.hpp"
 #include "tests/run_program.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
@@ -15,20 +16,15 @@
 namespace elastocal {
 namespace {
 
-const char* const kPostures = R"(
-robot: talos
-chains:
-  - name: arm_left
-    support: [left_sole_link, right_sole_link]
-    postures:
-      - {arm_left_1_joint: -0.4, arm_left_2_joint: 0.6, arm_left_4_joint: -1.2}
-      - {arm_left_1_joint: 0.3, arm_left_2_joint: 0.3, arm_left_4_joint: -1.9}
+const std::string kPostures =
+    kPostureOfArm +
+    std::string(R"(      - {arm_left_1_joint: 0.3, arm_left_2_joint: 0.3, arm_left_4_joint: -1.9}
       - {arm_left_1_joint: 0.3, arm_left_2_joint: 0.3, arm_left_3_joint: -1.57, arm_left_4_joint: -1.9}
   - name: leg_left
     support: [right_sole_link]
     postures:
       - {leg_left_1_joint: 0.2, leg_left_3_joint: -0.9, leg_left_4_joint: 1.2}
-)";
+)");
 
 class Plan : public testing::Test {
  protected:

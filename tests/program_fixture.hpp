@@ -20,12 +20,10 @@ namespace elastocal {
 class Program : public ::testing::Test {
  protected:
   void SetUp() override {
-    const Project project = ReadProject(SourceFile(kProject));
-    const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
-    const BaseParameters base = FindBaseParameters(model, project.identifiability);
-    truth_ = DrawErrors(model, base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
-    const Recording recording = MakeSyntheticRecording(model, truth_, {.postures = 30});
-    WritePostureTable(scratch_.path() / "recording.csv", recording, project.tree);
+    const BaseParameters base = FindBaseParameters(model_, arm_.identifiability);
+    truth_ = DrawErrors(model_, base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
+    WritePostureTable(scratch_.path() / "recording.csv",
+                      MakeSyntheticRecording(model_, truth_, {.postures = 30}), arm_.tree);
     project_ = SourceFile(kProject).string();
     recording_ = (scratch_.path() / "recording.csv").string();
     out_ = (scratch_.path() / "out").string();
@@ -66,13 +64,11 @@ class Program : public ::testing::Test {
   /// Another recording of the arm, its parameter changed, calibrated into `folder`.
   std::string CalibratedLater(const std::string& folder, const std::string& parameter,
                               double change) {
-    const Project project = ReadProject(project_);
-    const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
     Eigen::VectorXd later = truth_;
-    later[FindParameter(model.parameters, parameter)] += change;
+    later[FindParameter(model_.parameters, parameter)] += change;
     const std::string table = (scratch_.path() / (folder + ".csv")).string();
-    WritePostureTable(table, MakeSyntheticRecording(model, later, {.postures = 25, .seed = 9}),
-                      project.tree);
+    WritePostureTable(table, MakeSyntheticRecording(model_, later, {.postures = 25, .seed = 9}),
+                      arm_.tree);
     const std::string out = (scratch_.path() / folder).string();
     const ProgramResult result =
         RunProgram("calibrate " + project_ + " --recording " + table + " -o " + out + kFewFolds);
@@ -80,10 +76,16 @@ class Program : public ::testing::Test {
     return out;
   }
 
+  int Coordinate(const std::string& joint) const {
+    return arm_.tree.joints[static_cast<std::size_t>(FindJoint(arm_.tree, joint))].coordinate;
+  }
+
   static constexpr const char* kFewFolds = " --kfold 3";
   static constexpr const char* kProject = "tests/robots/arm6_project.yaml";
   ScratchFolder scratch_;
-  Eigen::VectorXd truth_;
+  const Project arm_ = ReadProject(SourceFile(kProject));
+  const ErrorModel model_ = MakeErrorModel(arm_.tree, arm_.markers, arm_.placement);
+  Eigen::VectorXd truth_;  ///< of the recording
   std::string project_, recording_, out_;
 };
 

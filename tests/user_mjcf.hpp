@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/robot/inverse_dynamics.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 
 namespace elastocal {
@@ -19,14 +20,9 @@ inline std::string PoseText(const Transform& T) {
 
 /// Links of a body of the tree as one point mass (with some inertia): all that statics needs.
 inline std::string InertialText(const RobotTree& tree, int body) {
-  double mass = 0.0;
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (const Link& link : tree.links) {
-    if (link.body != body) continue;
-    mass += link.mass;
-    moment += link.mass * (link.T_body_link * link.com);
-  }
-  const Eigen::Vector3d com = mass > 0.0 ? Eigen::Vector3d(moment / mass) : moment;
+  const BodyInertia inertia = BodyInertias(tree)[static_cast<std::size_t>(body)];
+  const double mass = inertia.mass;
+  const Eigen::Vector3d& com = inertia.com;
   return fmt::format(
       "<inertial pos=\"{:.17g} {:.17g} {:.17g}\" mass=\"{:.17g}\" diaginertia=\"{} {} {}\"/>\n",
       com.x(), com.y(), com.z(), std::max(mass, 1e-6), 0.01 + 0.01 * mass, 0.01 + 0.01 * mass,

@@ -11,6 +11,7 @@
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/pipeline/compare_calibrations.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -31,9 +32,7 @@ int Compare(const CompareOptions& options) {
   outputs.Prepare();
   const ComparisonRun run = CompareCalibrations(options.a, options.b, options.comparison);
   outputs.Set(options.common.json_file,
-              MakeComparisonJson(run.a, run.b, run.comparison, options.comparison)
-                      .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                  "\n");
+              JsonText(MakeComparisonJson(run.a, run.b, run.comparison, options.comparison)));
   outputs.Publish();
   Print(options.common.Silent(), DescribeComparison(run.a, run.b, run.comparison,
                                                     options.comparison, options.common.verbose));

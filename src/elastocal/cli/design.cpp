@@ -195,6 +195,42 @@ void AddFollowUpOptions(CLI::App& command, DesignCommand& options) {
       ->capture_default_str();
 }
 
+void AddSearchOptions(CLI::App& command, DesignCommand& options) {
+  command
+      .add_option("--count", options.count,
+                  "Number of postures for each chain; default: as many as it takes. With "
+                  "contact or instruments in the project, number in all (30)")
+      ->check(FromTo(1, 1000));
+  command.add_option("--max-count", options.max_count, "Largest number of postures for each chain")
+      ->check(FromTo(1, 1000))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--plateau", options.plateau,
+          "The search ends when two additions in turn raise the index by less than this share")
+      ->check(InBounds("design --plateau"))
+      ->capture_default_str();
+  command.add_option("--block", options.block, "Postures added at a time (N_p)")
+      ->check(FromTo(1, 100))
+      ->capture_default_str();
+  command
+      .add_option("--algorithm", options.algorithm,
+                  "nocp finds out how many postures it takes; the others take --count (24)")
+      ->transform(OneOf({"nocp", "cocp", "ioops", "exchange", "random"}))
+      ->capture_default_str();
+  command.add_option("--criterion", options.criterion, "Observability index")
+      ->transform(OneOf({"O1", "O2", "O3", "O4", "O5"}))
+      ->capture_default_str();
+  command.add_flag(
+      "--elastic", options.elastic,
+      "Also determine the compliances of the joints (eq. 5), and of the one leg that stands "
+      "(eq. 6)");
+  command.add_flag("--curves", options.curves,
+                   "Also show what the other algorithms reach (takes several times as long)");
+  command.add_flag("--no-certificate", options.no_certificate,
+                   "Do not compute the upper bound and the efficiency, which takes long");
+}
+
 }  // namespace
 
 void AddDesign(CLI::App& app, Action& action) {
@@ -216,40 +252,7 @@ void AddDesign(CLI::App& app, Action& action) {
                    "of a range: room for `compensate`, see plan")
       ->check(InBounds("plan --limit-margin-deg"))
       ->capture_default_str();
-  command
-      ->add_option("--count", options->count,
-                   "Number of postures for each chain; default: as many as it takes. With "
-                   "contact or instruments in the project, number in all (30)")
-      ->check(FromTo(1, 1000));
-  command
-      ->add_option("--max-count", options->max_count, "Largest number of postures for each chain")
-      ->check(FromTo(1, 1000))
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--plateau", options->plateau,
-          "The search ends when two additions in turn raise the index by less than this share")
-      ->check(InBounds("design --plateau"))
-      ->capture_default_str();
-  command->add_option("--block", options->block, "Postures added at a time (N_p)")
-      ->check(FromTo(1, 100))
-      ->capture_default_str();
-  command
-      ->add_option("--algorithm", options->algorithm,
-                   "nocp finds out how many postures it takes; the others take --count (24)")
-      ->transform(OneOf({"nocp", "cocp", "ioops", "exchange", "random"}))
-      ->capture_default_str();
-  command->add_option("--criterion", options->criterion, "Observability index")
-      ->transform(OneOf({"O1", "O2", "O3", "O4", "O5"}))
-      ->capture_default_str();
-  command->add_flag(
-      "--elastic", options->elastic,
-      "Also determine the compliances of the joints (eq. 5), and of the one leg that stands "
-      "(eq. 6)");
-  command->add_flag("--curves", options->curves,
-                    "Also show what the other algorithms reach (takes several times as long)");
-  command->add_flag("--no-certificate", options->no_certificate,
-                    "Do not compute the upper bound and the efficiency, which takes long");
+  AddSearchOptions(*command, *options);
   AddFollowUpOptions(*command, *options);
   AddCommonOptions(*command, options->common);
   command->footer(

@@ -13,6 +13,7 @@
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/report/page.hpp"
 #include "elastocal/report/version.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -41,8 +42,7 @@ int Report(const ReportOptions& options) {
   const std::string page = MakeFolderPage(folder, ProgramVersion(), earlier);
   SetPage(folder, output, page, outputs);
   const nlohmann::ordered_json json = {{"report", output.string()}, {"bytes", page.size()}};
-  outputs.Set(options.common.json_file,
-              json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  outputs.Set(options.common.json_file, JsonText(json));
   outputs.Publish();
   Print(options.common.Silent() || options.output == "-",
         fmt::format("Report: {} ({:.1f} MB)\n", output.string(),

@@ -72,7 +72,7 @@ std::string OneLine(const CLI::App& app, const CLI::Error& error) {
 
 std::string UsageMessage(const CLI::App* app, const CLI::Error& error) {
   const CLI::App& command = GivenCommand(*app);
-  return OneLine(*app, error) + "\n" +
+  return "elastocal: error: " + OneLine(*app, error) + "\n" +
          fmt::format("elastocal {}--help explains {}.\n",
                      &command == app ? "" : command.get_name() + " ",
                      &command == app ? "what there is" : "the options");

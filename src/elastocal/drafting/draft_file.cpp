@@ -9,6 +9,7 @@
 
 #include "elastocal/drafting/draft.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -253,7 +254,7 @@ std::string FormatDraftSummary(const ProjectDraft& draft) {
                      {"stance_mm", draft.stance ? Json(*draft.stance / kMetresPerMm) : Json()},
                      {"design", designs},
                      {"warnings", draft.warnings}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

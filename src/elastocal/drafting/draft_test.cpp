@@ -28,6 +28,20 @@ double Length(const Project& project, int marker, int other) {
       .norm();
 }
 
+/// No point of the shapes is further than 15 mm out of the spheres of its link.
+void ExpectCovered(const ProjectDraft& shapes, const std::vector<CollisionSphere>& spheres) {
+  for (const BodyShape& body : shapes.shapes.bodies) {
+    for (const Eigen::Vector3d& p : body.points) {
+      double outside = std::numeric_limits<double>::infinity();
+      for (const CollisionSphere& sphere : spheres) {
+        if (sphere.link != body.link) continue;
+        outside = std::min(outside, (p - sphere.p_link_centre).norm() - sphere.radius);
+      }
+      EXPECT_LT(outside, 0.015) << shapes.tree.links[Size(body.link)].name;
+    }
+  }
+}
+
 TEST(DraftStudy, TalosHasTheLimbsOfItsHandWrittenProject) {
   const ScratchFolder folder;
   const Project drafted = ReadBack(DraftFile("models/talos/talos.urdf"), folder);
@@ -81,16 +95,7 @@ TEST(Draft, SpheresCoverTheShapesOfTalosWithin15Millimetres) {
   const ProjectDraft& draft = DraftFile("models/talos/talos.urdf");
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(draft.tree.coordinate_count());
   const auto poses = LinkTransforms(draft.tree, zero);
-  for (const BodyShape& body : draft.shapes.bodies) {
-    for (const Eigen::Vector3d& p : body.points) {
-      double outside = std::numeric_limits<double>::infinity();
-      for (const CollisionSphere& sphere : draft.spheres) {
-        if (sphere.link != body.link) continue;
-        outside = std::min(outside, (p - sphere.p_link_centre).norm() - sphere.radius);
-      }
-      EXPECT_LT(outside, 0.015) << draft.tree.links[Size(body.link)].name;
-    }
-  }
+  ExpectCovered(draft, draft.spheres);
   EXPECT_LT(draft.spheres.size(), 70U);
 }
 
@@ -169,16 +174,7 @@ TEST(DraftStudy, MeshesAreShapesLikeOthers) {
   }
   EXPECT_EQ(meshes.clusters.size(), boxes.clusters.size());
   // Points of the boxes' surfaces that the mesh's own points are not.
-  for (const BodyShape& body : boxes.shapes.bodies) {
-    for (const Eigen::Vector3d& p : body.points) {
-      double outside = std::numeric_limits<double>::infinity();
-      for (const CollisionSphere& sphere : meshes.spheres) {
-        if (sphere.link != body.link) continue;
-        outside = std::min(outside, (p - sphere.p_link_centre).norm() - sphere.radius);
-      }
-      EXPECT_LT(outside, 0.015) << boxes.tree.links[Size(body.link)].name;
-    }
-  }
+  ExpectCovered(boxes, meshes.spheres);
 }
 
 TEST(Draft, MissingMeshesAreOneWarning) {

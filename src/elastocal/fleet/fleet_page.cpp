@@ -7,6 +7,7 @@
 
 #include "elastocal/report/page.hpp"
 #include "elastocal/report/version.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -49,7 +50,7 @@ std::string MakeFleetPage(const FleetReport& report, const std::string& fleet_js
                               {"sd", one.sd},
                               {"robots", one.robots}});
   }
-  return MakePage(PageTemplate(), json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return MakePage(PageTemplate(), JsonLine(json));
 }
 
 }  // namespace elastocal

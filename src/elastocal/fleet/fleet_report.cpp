@@ -13,6 +13,7 @@
 #include "elastocal/io/covariance_file.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
+#include "elastocal/tables/json_text.hpp"
 #include "elastocal/tables/table_writer.hpp"
 
 namespace elastocal {
@@ -149,7 +150,7 @@ std::string FleetJson(const FleetReport& report) {
     json["drifts"].push_back(std::move(found));
   }
   json["notes"] = report.notes;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 std::string SessionsTable(const FleetReport& report) {

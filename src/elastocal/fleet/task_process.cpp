@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -118,7 +119,7 @@ TaskEnd TaskProcess::Finish(int exit_code) {
     made += ".new";
     {
       std::ofstream file(made);
-      file << mark.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+      file << JsonText(mark);
     }
     fs::rename(made, place, error);
   }

@@ -8,6 +8,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/planning/chain_setups.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -136,8 +137,7 @@ std::vector<ChainPostures> RecordedPostures(const Project& project, const Record
 std::string FormatAssessment(const std::vector<ChainAssessment>& chains, int weakest) {
   Json list = Json::array();
   for (const ChainAssessment& chain : chains) list.push_back(AssessedJson(chain, weakest));
-  return Json{{"chains", list}}.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-         "\n";
+  return JsonText(Json{{"chains", list}});
 }
 
 }  // namespace elastocal

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/planning/compensate_motion.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -38,7 +39,7 @@ std::string MakeCompensationJson(const CompensatedMotion& result) {
   json["at_rest"] = result.at_rest;
   json["broken"] = result.broken;
   json["warnings"] = result.warnings;
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

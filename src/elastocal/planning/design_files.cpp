@@ -6,6 +6,7 @@
 
 #include "elastocal/planning/curves_file.hpp"
 #include "elastocal/planning/design_postures.hpp"
+#include "elastocal/tables/json_text.hpp"
 #include "elastocal/tables/table_writer.hpp"
 
 namespace elastocal {
@@ -106,7 +107,7 @@ std::string FormatDesignSummary(const Project& project, const PostureDesign& des
                      {"seed", options.design.seed},
                      {"postures", design.posture_count()},
                      {"chains", chains}};
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 void SetDesignFiles(const DesignFiles& files, const Project& project, const PostureDesign& design,

@@ -11,6 +11,7 @@
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/planning/chain_setups.hpp"
+#include "elastocal/tables/json_text.hpp"
 #include "elastocal/validation/earlier_markers.hpp"
 
 namespace elastocal {
@@ -187,7 +188,7 @@ std::string MakeFollowUpJson(const FollowUpDesign& design, const FollowUpOptions
     one["zeros"] = ZerosJson(chain.zeros);
     json["chains"].push_back(std::move(one));
   }
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

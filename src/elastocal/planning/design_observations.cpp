@@ -14,6 +14,7 @@
 #include "elastocal/observation/observation_fit.hpp"
 #include "elastocal/pipeline/contact_earlier.hpp"
 #include "elastocal/planning/posture_information.hpp"
+#include "elastocal/tables/json_text.hpp"
 #include "elastocal/validation/common_parameters.hpp"
 
 namespace elastocal {
@@ -259,7 +260,7 @@ std::string FormatObservationDesign(const ObservationDesign& design) {
   json["information_nats"] = design.information;
   json["information_at_random_nats"] = design.information_at_random;
   if (!design.zeros.empty()) json["zeros"] = ZerosJson(design.zeros);
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

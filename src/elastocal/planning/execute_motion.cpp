@@ -15,6 +15,7 @@
 #include "elastocal/math/parallel.hpp"
 #include "elastocal/planning/root_watch.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -342,7 +343,7 @@ std::string FormatExecutions(const RobotTree& tree, const std::string& calibrati
     playbacks.push_back({DeployName(one.as), one.stabilised, &one.playback});
   }
   // The pictures stand on one line, so that people can read what is before them.
-  std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string text = JsonText(json);
   text.resize(text.rfind("\n}"));
   return text + ",\n  \"playback\": " + FormatPlaybacks(tree, playbacks) + "\n}\n";
 }

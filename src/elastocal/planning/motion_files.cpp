@@ -9,6 +9,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/planning/plan_motion.hpp"
 #include "elastocal/planning/project_motion.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -133,7 +134,7 @@ std::string FormatMotionSummary(const Project& project, const MotionPlan& plan,
                              {"least_zmp_margin", run.least_zmp_margin},
                              {"largest_shift", run.largest_shift}});
   }
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

@@ -6,6 +6,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/planning/design_follow_up.hpp"
 #include "elastocal/planning/design_observations.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 
@@ -71,7 +72,7 @@ std::string WithNext(const std::string& check, const Project& project, const Nex
     }
     json["next_postures"].push_back({{"chain", chain.chain}, {"postures", std::move(postures)}});
   }
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/planning/simulate_observations.hpp"
 #include "elastocal/planning/truth_file.hpp"
+#include "elastocal/tables/json_text.hpp"
 #include "elastocal/tables/table_writer.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -129,7 +130,7 @@ std::string FormatObservedSimulation(const ObservedRecording& recording) {
   for (const SimulatedPosture& of : recording.postures) touches += of.plate >= 0 ? 1 : 0;
   json["touches"] = touches;
   json["warnings"] = recording.warnings;
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 }  // namespace elastocal

@@ -13,6 +13,7 @@
 
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/report/encoding.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -184,7 +185,7 @@ std::string FormatPlaybacks(const RobotTree& tree, const std::vector<NamedPlayba
   json["unit_m"] = kUnit;
   json["unit_rad"] = kUnit;
   for (const NamedPlayback& robot : robots) json["robots"].push_back(RobotJson(tree, robot));
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return JsonLine(json);
 }
 
 }  // namespace elastocal

@@ -8,6 +8,7 @@
 #include "elastocal/files/yaml_value.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
+#include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
@@ -124,7 +125,7 @@ std::string FormatSimulationSummary(const SimulationRun& run) {
     json["stiffness"][leg.chain] =
         std::vector<double>(leg.compliance.stiffness.begin(), leg.compliance.stiffness.end());
   }
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return JsonText(json);
 }
 
 std::string TrialNameOf(const fs::path& file) {

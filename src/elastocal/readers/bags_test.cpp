@@ -7,6 +7,7 @@
 #include "elastocal/readers/ros_messages.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "tests/bag_writers.hpp"
+#include "tests/count_in.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
@@ -356,7 +357,7 @@ TEST(BagsTest, ADatabaseWithoutItsFileWalSaysSoAndLeavesNothingBesideIt) {
   EXPECT_EQ(read.joints->positions,
             ReadRecordingFile(SourceFile("tests/recordings/bag.db3"), {}).joints->positions);
   EXPECT_NE(read.notes.front().find("the last messages are missing"), std::string::npos);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  EXPECT_EQ(CountIn(folder.path()), 1);
 }
 
 TEST(BagsTest, DamageIsNamedWithItsPlace) {

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/robot/inverse_dynamics.hpp"
 #include "elastocal/robot/jacobian.hpp"
 #include "elastocal/robot/posture_loads.hpp"
 #include "elastocal/robot/statics.hpp"
@@ -117,14 +118,7 @@ void AddWeight(RobotTree& tree, int joint, double mass, const Eigen::Vector3d& m
 
 /// Centre of mass of all that a joint's link carries by fixed joints, in its frame, m.
 Eigen::Vector3d CentreOfBody(const RobotTree& tree, int joint) {
-  double mass = 0.0;
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (const Link& link : tree.links) {
-    if (link.body != joint + 1) continue;
-    mass += link.mass;
-    moment += link.mass * (link.T_body_link * link.com);
-  }
-  return moment / mass;
+  return BodyInertias(tree)[joint + 1].com;
 }
 
 /// An elbow that carries more turns the shoulder, and the marker with it.
