@@ -66,6 +66,7 @@ class FaultExplanation {
 
   bool complete() const { return complete_; }
   double left() const { return left_; }
+  const std::vector<RecordingFault>& faults() const { return faults_; }
 
   std::string Describe() const {
     const bool single = faults_.size() == 1 && complete_;
@@ -97,6 +98,7 @@ class FaultExplanation {
 
   CalibrationResult Fit(const ErrorModel& model, const BaseParameters& base,
                         const Recording& recording) const {
+    if (general_.fit) return general_.fit(model, base, recording);
     return Calibrate(model, recording, base, general_.kind, general_.options);
   }
   CalibrationResult Fit(const Recording& recording) const {
@@ -389,7 +391,7 @@ std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
 
 FaultsInWords ExplainFault(const GeneralFault& general, const Project& project) {
   const FaultExplanation explanation(general, project);
-  return {explanation.Describe(), explanation.complete(), explanation.left()};
+  return {explanation.Describe(), explanation.complete(), explanation.left(), explanation.faults()};
 }
 
 }  // namespace elastocal

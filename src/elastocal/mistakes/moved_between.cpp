@@ -43,7 +43,8 @@ struct Moved {
 };
 
 Moved TakeAsTwo(const Project& project, const CalibrationResult& together, const Recording& all,
-                const CalibrationOptions& options, const MovedSuspect& suspect) {
+                const CalibrationOptions& options, const MovedSuspect& suspect,
+                const FitOf& fit_of) {
   ErrorModel model = together.model;
   Recording split = all;
   std::vector<int> markers = suspect.cluster.markers;
@@ -75,8 +76,9 @@ Moved TakeAsTwo(const Project& project, const CalibrationResult& together, const
     }
   }
   model = SelectMarkers(model, split.marker_names);
-  const CalibrationResult fit = Calibrate(
-      model, split, FindBaseParameters(model, project.identifiability), together.kind, options);
+  const BaseParameters base = FindBaseParameters(model, project.identifiability);
+  const CalibrationResult fit =
+      fit_of ? fit_of(model, base, split) : Calibrate(model, split, base, together.kind, options);
   moved.left = MarkerError(fit, split, options);
   for (std::size_t k = 0; k < markers.size(); ++k) {
     moved.distances.push_back(
@@ -132,12 +134,12 @@ std::string DescribeMoved(const Recording& all, const MovedSuspect& suspect, con
 
 std::string FindMovedBetween(const Project& project, const CalibrationResult& together,
                              const Recording& all, const CalibrationOptions& options,
-                             const std::vector<MovedSuspect>& suspects) {
+                             const std::vector<MovedSuspect>& suspects, const FitOf& fit) {
   const double before = MarkerError(together, all, options);
   double least = kLeftWhereMoved * before;
   std::string found;
   for (std::size_t k = 0; k < std::min(kMostSuspects, suspects.size()); ++k) {
-    const Moved moved = TakeAsTwo(project, together, all, options, suspects[k]);
+    const Moved moved = TakeAsTwo(project, together, all, options, suspects[k], fit);
     if (!(moved.left < least) ||
         *std::max_element(moved.distances.begin(), moved.distances.end()) < kLeastMoved) {
       continue;
