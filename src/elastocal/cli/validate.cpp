@@ -59,7 +59,9 @@ bool ModelGivesWay(const ErrorModel& model) {
 
 /// One sentence for whoever reads no table.
 std::string VerdictText(const ValidationRun& run) {
-  if (!run.mistakes.empty()) return "Verdict: the recording has a mistake; see below.\n\n";
+  if (!run.mistakes.empty()) {
+    return "Verdict: the recording has a mistake or contradicts the calibration; see below.\n\n";
+  }
   if (!run.converged() || !run.plausible() || !run.better()) {
     return "Verdict: do not deploy; see below.\n\n";
   }
@@ -68,8 +70,13 @@ std::string VerdictText(const ValidationRun& run) {
                      : run.predicted == 0.0 ? "from"
                      : run.as_predicted()   ? "as calibrated. From"
                                             : "worse than calibrated. From";
+  const std::string judged =
+      run.not_judged.empty()
+          ? ""
+          : fmt::format("not all trials can be judged ({} cannot, see below). The others: ",
+                        run.not_judged.size());
   std::string text =
-      fmt::format("Verdict: {} {} to {} mm{}", word, error(run.transfer.uncalibrated),
+      fmt::format("Verdict: {}{} {} to {} mm{}", judged, word, error(run.transfer.uncalibrated),
                   error(run.urdf ? *run.urdf : run.transfer.calibrated),
                   run.urdf ? " by the URDF alone" : ", nothing fitted");
   if (run.predicted > 0.0) {
@@ -110,6 +117,8 @@ std::string RunText(const ValidationRun& run) {
 
 std::vector<std::string> ErrorsOf(const ValidationRun& run) {
   std::vector<std::string> errors = run.mistakes;
+  errors.insert(errors.end(), run.not_judged.begin(), run.not_judged.end());
+  if (!run.mistakes.empty()) return errors;  // they explain the figures
   if (!run.converged()) errors.emplace_back("the fit of waist and markers has not converged");
   if (!run.plausible()) {
     errors.push_back(fmt::format(
@@ -136,7 +145,8 @@ CommandResult ValidateByMarkers(const ValidateOptions& options, const Project& p
           .text = RunText(run),
           .warnings = run.warnings,
           .errors = ErrorsOf(run),
-          .fine = run.converged() && run.better() && run.plausible() && run.mistakes.empty()};
+          .fine = run.converged() && run.better() && run.plausible() && run.mistakes.empty() &&
+                  run.not_judged.empty()};
 }
 
 void RefuseOtherKindsOptions(const ValidateOptions& options, const Project& project) {

@@ -11,6 +11,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kPoorPeak = 0.98;       // of a log that may be that of another trial
+constexpr double kLittleOfTrial = 0.5;   // of its duration
 constexpr double kLackWithRight = 0.25;  // of what a correlation lacks to one is left
 constexpr int kMostUntold =
     4;  // trials: of more, the cause is another one, and each try reads files
@@ -19,13 +20,20 @@ bool ClockIsUntold(const TrialSummary& summary) {
   return !summary.refused.empty() && summary.clock.state != ClockState::kReliable;
 }
 
-/// With the log of another trial, if it is far better than with its own.
+/// A short log fits some part of a long trial by chance.
+bool CoversLittle(const TrialSummary& summary) {
+  return (summary.log_end_s - summary.log_begin_s) * summary.rate_hz <
+         kLittleOfTrial * summary.frame_count;
+}
+
+/// With the log of another trial, if it is far better than with its own, or far longer.
 bool FitsBetter(const SampleWithLog& sample, const TrialSummary& own, std::size_t markers_of,
                 std::size_t log_of) {
   try {
     const TrialSamples other = sample(markers_of, log_of);
-    return other.summary.refused.empty() &&
-           1.0 - other.summary.clock.peak < kLackWithRight * (1.0 - own.clock.peak);
+    if (!other.summary.refused.empty()) return false;
+    const bool longer = own.refused.empty() && CoversLittle(own) && !CoversLittle(other.summary);
+    return longer || 1.0 - other.summary.clock.peak < kLackWithRight * (1.0 - own.clock.peak);
   } catch (const InputError&) {
     return false;
   }
@@ -55,7 +63,8 @@ void RefuseExchangedLogs(const SampleWithLog& sample, std::vector<TrialSamples>&
     for (std::size_t b = 0; b < samples.size() && explained[a] == 0; ++b) {
       const TrialSummary& other = samples[b].summary;
       const bool poor =
-          ClockIsUntold(other) || (other.refused.empty() && other.clock.peak < kPoorPeak);
+          ClockIsUntold(other) ||
+          (other.refused.empty() && (other.clock.peak < kPoorPeak || CoversLittle(other)));
       if (a == b || explained[b] != 0 || !poor || (ClockIsUntold(other) && b < a)) continue;
       if (!FitsBetter(sample, samples[a].summary, a, b) || !FitsBetter(sample, other, b, a)) {
         continue;

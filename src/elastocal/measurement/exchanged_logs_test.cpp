@@ -66,6 +66,20 @@ TEST(ExchangedLogs, TwoTrialsWithEachOthersLogSaySo) {
   EXPECT_EQ(samples[0].summary.refused, "no clock");
 }
 
+// Random postures with the log of a repetition.
+TEST(ExchangedLogs, AShortLogFitsALongTrialByChance) {
+  for (const double covered_s : {4.0, 8.0}) {
+    std::vector<TrialSamples> samples{WithClock("a", ClockState::kWeak, 0.3),
+                                      WithClock("b", ClockState::kReliable, 0.985)};
+    samples[1].summary.rate_hz = 100.0;
+    samples[1].summary.frame_count = 1000;
+    samples[1].summary.log_begin_s = 5.0 - 0.5 * covered_s;
+    samples[1].summary.log_end_s = 5.0 + 0.5 * covered_s;
+    RefuseExchangedLogs(Sampler({1, 0}, 0.99), samples);
+    EXPECT_EQ(samples[1].summary.refused.empty(), covered_s == 8.0) << samples[1].summary.refused;
+  }
+}
+
 // Each try reads files and looks for a clock.
 TEST(ExchangedLogs, AreNotLookedForWhereMostClocksCannotBeTold) {
   std::vector<TrialSamples> samples;

@@ -59,6 +59,10 @@ class LabelFinder {
   const ClusterShape& shape() const { return shape_; }
   bool ambiguous() const { return ambiguous_; }
 
+  bool IsSeen(int frame, int marker) const {
+    return !std::isnan(trajectories_.positions(frame, 3 * markers_[marker]));
+  }
+
   Plan Find() const {
     Plan plan(trajectories_.frame_count(), shape_.size);
     DecideWholeFrames(plan);
@@ -220,10 +224,6 @@ class LabelFinder {
     return shape_.Fits(table_.row(frame), shape_.permutations[order]);
   }
 
-  bool IsSeen(int frame, int marker) const {
-    return !std::isnan(trajectories_.positions(frame, 3 * markers_[marker]));
-  }
-
   const std::vector<int>& markers_;
   const MarkerTrajectories& trajectories_;
   DistanceTable table_;
@@ -245,6 +245,35 @@ void CheckCluster(const LabelCluster& cluster, int marker_count) {
 // Whether label `i` of the cluster loses its position in a frame.
 bool IsRemoved(const Plan& plan, const ClusterShape& shape, int frame, int i) {
   return plan.removed[shape.permutations[plan.order[frame]][i]][frame];
+}
+
+// Labels of a cluster that are off beside its others in most of the frames that show them.
+std::vector<int> OffMostly(const LabelFinder& finder, const Plan& plan) {
+  const ClusterShape& shape = finder.shape();
+  const auto fits = [&](int frame, int i) {
+    return finder.IsSeen(frame, shape.permutations[plan.order[frame]][i]) &&
+           !IsRemoved(plan, shape, frame, i);
+  };
+  std::vector<int> off;
+  for (int i = 0; i < shape.size; ++i) {
+    int sightings = 0, alone = 0;
+    for (int frame = 0; frame < static_cast<int>(plan.order.size()); ++frame) {
+      if (!finder.IsSeen(frame, shape.permutations[plan.order[frame]][i])) continue;
+      ++sightings;
+      bool others = false;
+      for (int k = 0; k < shape.size; ++k) others = others || (k != i && fits(frame, k));
+      alone += others && !fits(frame, i);
+    }
+    if (2 * alone > sightings) off.push_back(i);
+  }
+  return off;
+}
+
+void RemoveThroughout(const LabelFinder& finder, int i, Plan& plan) {
+  for (int frame = 0; frame < static_cast<int>(plan.order.size()); ++frame) {
+    const int raw = finder.shape().permutations[plan.order[frame]][i];
+    if (finder.IsSeen(frame, raw)) plan.removed[raw][frame] = true;
+  }
 }
 
 // Carries out a plan.
@@ -296,9 +325,31 @@ ClusterLabels Report(const Plan& plan, const LabelFinder& finder, const LabelClu
 std::vector<ClusterLabels> CorrectLabels(const std::vector<LabelCluster>& clusters,
                                          const LabelOptions& options,
                                          MarkerTrajectories& trajectories) {
-  std::vector<ClusterLabels> reports;
+  std::vector<LabelFinder> finders;
+  std::vector<Plan> plans;
+  finders.reserve(clusters.size());
+  struct Off {
+    std::size_t finder = 0;
+    int label = 0;
+  };
+  std::vector<Off> off;
   for (const LabelCluster& cluster : clusters) {
     CheckCluster(cluster, trajectories.marker_count());
+    if (cluster.markers.size() < 2) continue;
+    finders.emplace_back(cluster.markers, options, trajectories);
+    plans.push_back(finders.back().Find());
+    for (const int i : OffMostly(finders.back(), plans.back())) {
+      off.push_back({finders.size() - 1, i});
+    }
+  }
+  // One of each of two clusters: they have each other's labels, and fit for a while by chance. One
+  // alone was displaced, and is right before or after.
+  if (off.size() == 2 && off[0].finder != off[1].finder) {
+    for (const Off& one : off) RemoveThroughout(finders[one.finder], one.label, plans[one.finder]);
+  }
+  std::vector<ClusterLabels> reports;
+  std::size_t next = 0;
+  for (const LabelCluster& cluster : clusters) {
     if (cluster.markers.size() < 2) {
       reports.emplace_back();
       reports.back().name = cluster.name;
@@ -306,8 +357,8 @@ std::vector<ClusterLabels> CorrectLabels(const std::vector<LabelCluster>& cluste
       reports.back().ambiguous = true;
       continue;
     }
-    const LabelFinder finder(cluster.markers, options, trajectories);
-    const Plan plan = finder.Find();
+    const LabelFinder& finder = finders[next];
+    const Plan& plan = plans[next++];
     Apply(plan, finder.shape(), cluster.markers, trajectories.positions);
     reports.push_back(Report(plan, finder, cluster));
   }

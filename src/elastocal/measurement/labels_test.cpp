@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -257,6 +258,29 @@ TEST(CorrectLabels, FindsTheShapeThoughAMarkerWasLostOrKnocked) {
   ASSERT_EQ(labels[0].outliers.size(), 1u);
   EXPECT_EQ(labels[0].outliers[0].frames, (FrameInterval{3010, 4000}));
   EXPECT_EQ(labels[0].outliers[0].marker, 1);
+}
+
+// Two limbs' markers with each other's labels fit neither cluster but where they come near by
+// chance. One that is off alone was displaced, and is right up to there.
+TEST(CorrectLabels, TwoMarkersThatAreOffMostOfTheTimeAreOffAllTheTime) {
+  const auto left = [](int fitting_a, int fitting_d) {
+    MarkerTrajectories trajectories = MoveNamed(1000);
+    trajectories.names = {"a", "b", "c", "d", "e", "f"};
+    trajectories.positions.conservativeResize(1000, 18);
+    trajectories.positions.rightCols(9) = trajectories.positions.leftCols(9);
+    LabelOptions usual = Usual();
+    usual.usual.insert({{{"d", "e"}, 0.0600}, {{"d", "f"}, 0.0897}, {{"e", "f"}, 0.0711}});
+    trajectories.positions.block(fitting_a, 0, 1000 - fitting_a, 3).array() += 0.05;
+    trajectories.positions.block(fitting_d, 9, 1000 - fitting_d, 3).array() += 0.05;
+    CorrectLabels({{"wrist", {0, 1, 2}}, {"knee", {3, 4, 5}}}, usual, trajectories);
+    const auto seen = [&](int m) {
+      return 1000 - trajectories.positions.col(3 * m).array().isNaN().count();
+    };
+    return std::pair(seen(0), seen(3));
+  };
+  EXPECT_EQ(left(300, 400), std::pair(0L, 0L));
+  EXPECT_EQ(left(300, 1000), std::pair(300L, 1000L));
+  EXPECT_EQ(left(300, 700), std::pair(300L, 700L));
 }
 
 TEST(CorrectLabels, RefusesWrongClusters) {

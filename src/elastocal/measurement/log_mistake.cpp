@@ -16,32 +16,67 @@ constexpr double kLeastMotion = 0.05;  // rad or m: range of a joint that can be
 constexpr double kLeastPeak = 0.9;     // what is right correlates well
 constexpr double kFitsAsItIs = 0.999;  // correlation of a log that only noise keeps from one
 constexpr double kFarBetter = 0.25;    // of what a correlation lacks to one is left
+constexpr int kFewestMoved = 3;        // columns: of two, they are exchanged
 constexpr double kLeastFrozen_s = 2.0;
 constexpr double kJumpSpreads_s = 1.2;       // the filter spreads the jump at either end
 constexpr double kPartFits = 0.9;            // correlation in a part of the log that is not wrong
 constexpr std::size_t kMostByPositions = 6;  // mistakes whose positions are compared
 
-/// Joints that move and are between the standing link and a marker.
-std::vector<int> MovingColumns(const MarkedRobot& robot, const std::vector<int>& markers,
-                               const SmoothedLog& log, const std::vector<int>& coordinates) {
+/// By coordinate: whether the joint is between the standing link and a marker.
+std::vector<char> OnTheWay(const MarkedRobot& robot, const std::vector<int>& markers) {
   std::vector<char> on_way(robot.tree.coordinate_count(), 0);
   for (int m : markers) {
     for (int joint : JointsToBody(robot.tree, robot.tree.links[robot.markers[m].link].body)) {
       on_way[robot.tree.joints[joint].coordinate] = 1;
     }
   }
+  return on_way;
+}
+
+bool Moves(const SmoothedLog& log, int column) {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (const LogPiece& piece : log.pieces) {
+    lowest = std::min(lowest, piece.values.col(column).minCoeff());
+    highest = std::max(highest, piece.values.col(column).maxCoeff());
+  }
+  return highest - lowest > kLeastMotion;
+}
+
+/// Joints that move and are between the standing link and a marker.
+std::vector<int> MovingColumns(const MarkedRobot& robot, const std::vector<int>& markers,
+                               const SmoothedLog& log, const std::vector<int>& coordinates) {
+  const std::vector<char> on_way = OnTheWay(robot, markers);
   std::vector<int> moving;
   for (int c = 0; c < log.joints; ++c) {
-    if (on_way[coordinates[c]] == 0) continue;
-    double lowest = std::numeric_limits<double>::infinity();
-    double highest = -lowest;
-    for (const LogPiece& piece : log.pieces) {
-      lowest = std::min(lowest, piece.values.col(c).minCoeff());
-      highest = std::max(highest, piece.values.col(c).maxCoeff());
-    }
-    if (highest - lowest > kLeastMotion) moving.push_back(c);
+    if (on_way[coordinates[c]] != 0 && Moves(log, c)) moving.push_back(c);
   }
   return moving;
+}
+
+/// Columns side by side whose joints carry each other, in both directions by one.
+std::vector<LogMistake> MovedBlocks(const MarkedRobot& robot, const std::vector<int>& markers,
+                                    const std::vector<int>& coordinates, int count) {
+  const RobotTree& tree = robot.tree;
+  const std::vector<char> on_way = OnTheWay(robot, markers);
+  const auto joint_of = [&](int c) -> const Joint& {
+    return tree.joints[tree.coordinate_joint[coordinates[c]]];
+  };
+  const auto carries = [&](int c) {  // the joint of column c that of the next one
+    return on_way[coordinates[c + 1]] != 0 &&
+           joint_of(c + 1).parent_body == tree.links[joint_of(c).child_link].body;
+  };
+  std::vector<LogMistake> blocks;
+  for (int begin = 0; begin < count; ++begin) {
+    if (on_way[coordinates[begin]] == 0) continue;
+    for (int end = begin; end + 1 < count && carries(end); ++end) {
+      if (end + 1 - begin < kFewestMoved - 1) continue;
+      for (const int by : {1, -1}) {
+        blocks.push_back({.column = begin, .exchanged = end + 1, .moved = by});
+      }
+    }
+  }
+  return blocks;
 }
 
 /// Robot time from and to which a joint is logged in one place while others move by half a radian
@@ -159,18 +194,21 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
   if (peak > kFitsAsItIs) return std::nullopt;
   const double least_peak = std::max(kLeastPeak, 1.0 - kFarBetter * (1.0 - peak));
   std::vector<Candidate> candidates;
+  const auto try_one = [&](LogMistake mistake) {
+    const SmoothedLog changed = WithoutMistake(log, mistake);
+    const ClockFit fit = EstimateTrialClock(
+        speeds, rate_hz, PredictSpeeds(robot, markers, standing, changed, coordinates, rate_hz),
+        expected_lag_s, options);
+    if (fit.state != ClockState::kReliable || fit.peak < least_peak) return;
+    mistake.peak = fit.peak;
+    candidates.push_back({mistake, fit});
+  };
   const std::vector<int> columns = MovingColumns(robot, markers, log, coordinates);
   for (std::size_t a = 0; a < columns.size(); ++a) {
-    for (std::size_t b = a; b < columns.size(); ++b) {
-      LogMistake mistake{.column = columns[a], .exchanged = columns[b]};
-      const SmoothedLog changed = WithoutMistake(log, mistake);
-      const ClockFit fit = EstimateTrialClock(
-          speeds, rate_hz, PredictSpeeds(robot, markers, standing, changed, coordinates, rate_hz),
-          expected_lag_s, options);
-      if (fit.state != ClockState::kReliable || fit.peak < least_peak) continue;
-      mistake.peak = fit.peak;
-      candidates.push_back({mistake, fit});
-    }
+    for (std::size_t b = a; b < columns.size(); ++b) try_one({columns[a], columns[b]});
+  }
+  for (const LogMistake& moved : MovedBlocks(robot, markers, coordinates, log.joints)) {
+    try_one(moved);
   }
   std::optional<LogMistake> best =
       BestByPositions(std::move(candidates), [&](const Candidate& one) {
@@ -219,13 +257,33 @@ std::vector<LogMistake> MistakesOf(const std::vector<std::string>& mistakes,
 SmoothedLog WithoutMistake(SmoothedLog log, const LogMistake& mistake) {
   if (mistake.frozen_to_s > mistake.frozen_from_s) return log;
   for (LogPiece& piece : log.pieces) {
-    if (mistake.exchanged == mistake.column) {
+    if (mistake.moved != 0) {
+      const int size = mistake.exchanged - mistake.column + 1;
+      const Eigen::MatrixXd logged = piece.values.middleCols(mistake.column, size);
+      for (int k = 0; k < size; ++k) {
+        piece.values.col(mistake.column + k) = logged.col((k + mistake.moved + size) % size);
+      }
+    } else if (mistake.exchanged == mistake.column) {
       piece.values.col(mistake.column) *= -1.0;
     } else {
       piece.values.col(mistake.column).swap(piece.values.col(mistake.exchanged));
     }
   }
   return log;
+}
+
+std::string DescribeCopies(const SmoothedLog& log, const std::vector<std::string>& names) {
+  for (int a = 0; a < log.joints; ++a) {
+    for (int b = a + 1; b < log.joints; ++b) {
+      const bool same = std::all_of(log.pieces.begin(), log.pieces.end(), [&](const auto& piece) {
+        return piece.values.col(a) == piece.values.col(b);
+      });
+      if (!same || !Moves(log, a)) continue;
+      return "the columns of " + names[a] + " and " + names[b] +
+             " are copies of each other, number for number";
+    }
+  }
+  return "";
 }
 
 std::string Describe(const LogMistake& mistake, const std::vector<std::string>& names) {
@@ -239,6 +297,12 @@ std::string Describe(const LogMistake& mistake, const std::vector<std::string>& 
         "without that part the log fits %s",
         names[mistake.column].c_str(), mistake.frozen_from_s, mistake.frozen_to_s, peak);
     return text;
+  }
+  if (mistake.moved != 0) {
+    return "with the columns of " + names[mistake.column] + " to " + names[mistake.exchanged] +
+           " moved by one (" + names[mistake.column] + " has that of " +
+           names[mistake.moved > 0 ? mistake.column + 1 : mistake.exchanged] + ") the log fits " +
+           peak + ": is its header right?";
   }
   const std::string what =
       mistake.exchanged == mistake.column

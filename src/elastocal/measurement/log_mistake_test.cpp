@@ -121,5 +121,44 @@ TEST(LogMistakes, JointsThatMoveOneAfterTheOtherAreNotFrozen) {
   EXPECT_GT(mistake->frozen_to_s, mistake->frozen_from_s);
 }
 
+// A header with one name too few or too many before the limb.
+TEST(LogMistakes, ColumnsOfALimbThatAreAllMovedByOneAreNamed) {
+  const MarkedRobot robot = WaistAndLeg();
+  const ScriptedTrial clean = PlayStanding({.postures = 12, .move_s = 1.5});
+  MarkerTrajectories markers = clean.markers;
+  SmoothTrajectories({}, markers);
+  for (const int by : {1, -1}) {
+    ScriptedTrial moved = clean;
+    for (int c = 0; c < 6; ++c) {
+      moved.log.positions.col(c) = clean.log.positions.col((c - by + 6) % 6);
+    }
+    const auto found =
+        FindLogMistake(robot, AllMarkers(robot), {kFoot}, SmoothLog(moved.log, {}),
+                       {0, 1, 2, 3, 4, 5}, MarkerSpeeds(markers), markers, 0.0, {}, 0.5);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->moved, by);
+    EXPECT_EQ(found->column, 0);
+    EXPECT_EQ(found->exchanged, 5);
+    EXPECT_GT(found->peak, 0.99);
+    const SmoothedLog back = WithoutMistake(SmoothLog(moved.log, {}), *found);
+    EXPECT_EQ(back.pieces[0].values, SmoothLog(clean.log, {}).pieces[0].values);
+    EXPECT_EQ(Describe(*found, clean.log.names)
+                  .find("with the columns of " + clean.log.names[0] + " to " + clean.log.names[5]),
+              0u);
+  }
+}
+
+TEST(LogMistakes, CopiesOfColumnsAreNamed) {
+  ScriptedTrial played = PlayStanding({.postures = 12, .move_s = 1.5});
+  EXPECT_EQ(DescribeCopies(SmoothLog(played.log, {}), played.log.names), "");
+  played.log.positions.col(4) = played.log.positions.col(2);
+  EXPECT_EQ(DescribeCopies(SmoothLog(played.log, {}), played.log.names),
+            "the columns of " + played.log.names[2] + " and " + played.log.names[4] +
+                " are copies of each other, number for number");
+  for (const int still : {2, 4}) played.log.positions.col(still).setZero();
+  EXPECT_EQ(DescribeCopies(SmoothLog(played.log, {}), played.log.names), "")
+      << "joints that stand still";
+}
+
 }  // namespace
 }  // namespace elastocal

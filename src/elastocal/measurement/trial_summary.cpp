@@ -86,6 +86,21 @@ class Finder {
     }
   }
 
+  // Markers that are off in most frames, if they are of as many clusters.
+  std::vector<int> OffThroughout(const std::vector<int>& frames) const {
+    std::vector<int> markers;
+    for (const ClusterLabels& labels : summary_.labels) {
+      int here = 0;
+      for (const int m : labels.markers) {
+        if (2 * frames[m] <= summary_.frame_count) continue;
+        markers.push_back(m);
+        ++here;
+      }
+      if (here > 1) return {};
+    }
+    return markers;
+  }
+
   // Single outliers are normal for cameras; a marker that is off for long was touched.
   void AddOutliers() {
     std::vector<int> frames(summary_.markers.size(), 0);
@@ -95,6 +110,15 @@ class Finder {
         if (frames[outlier.marker] == 0) first[outlier.marker] = outlier.frames.begin;
         frames[outlier.marker] += outlier.frames.size();
       }
+    }
+    const std::vector<int> throughout = OffThroughout(frames);
+    if (throughout.size() == 2) {
+      const std::string &a = summary_.markers[throughout[0]], &b = summary_.markers[throughout[1]];
+      Add(
+          Format("%s and %s are off the shapes of their clusters most of the time; not used there. "
+                 "Were the labels of %s and %s exchanged?",
+                 a.c_str(), b.c_str(), a.c_str(), b.c_str()));
+      for (const int m : throughout) frames[m] = 0;
     }
     int few = 0;
     int markers = 0;

@@ -17,7 +17,8 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastScale = 2e-4;  // cameras are hardly calibrated better
-constexpr int kTurns = 4;             // by which a size is found
+constexpr int kTurns = 4;             // by which a size is found ...
+constexpr int kMostTurns = 10;        // ... from far off, as what a refit takes up lets it begin
 constexpr double kMostSteps = 10.0;   // of a turn
 
 /// What a recording leaves of the joints as calibrated, m^2.
@@ -28,11 +29,17 @@ double SquaresOf(const CheckedCalibration& calibration, const Recording& recordi
 /// The size at which least is left, by parabolas from `start`.
 double LeastSquares(const std::function<double(double)>& squares, double start) {
   double size = start, step = 0.1 * std::abs(start);
-  for (int turn = 0; turn < kTurns; ++turn, step *= 0.3) {
+  int near = 0;  // turns that reached what they aimed at
+  for (int turn = 0; turn < kMostTurns && near < kTurns; ++turn) {
     const double here = squares(size), below = squares(size - step), above = squares(size + step);
     const double curvature = below + above - 2.0 * here;
     if (!(curvature > 0.0)) break;
-    size += std::clamp(0.5 * (below - above) / curvature, -kMostSteps, kMostSteps) * step;
+    const double wanted = 0.5 * (below - above) / curvature;
+    const double moved = std::clamp(wanted, -kMostSteps, kMostSteps);
+    size += moved * step;
+    if (moved != wanted) continue;
+    step *= 0.3;
+    ++near;
   }
   return size;
 }

@@ -183,14 +183,6 @@ Recording AsUsed(const Recording& recording, const CalibrationResult& result) {
   return used;
 }
 
-/// In a sine the acceleration is proportional to the position, and so is what inertia bends: at
-/// half a hertz, a joint that would swing at 5 Hz seems to have a gain of 1 % in such a trial.
-bool MayBeInertia(const RecordingFault& fault, const Recording& recording) {
-  constexpr double kMostByInertia = 0.02;
-  return fault.kind == FaultKind::kJointGain && fault.trial >= 0 &&
-         recording.trials[Size(fault.trial)].of_motion() && std::abs(fault.size) < kMostByInertia;
-}
-
 /// A cluster that was knocked between trials or within one, as all of them together tell, the
 /// held-out ones last; empty: none. The trials of the estimate need not: where each shows other
 /// limbs, a waist that was knocked between them moves all that they show.

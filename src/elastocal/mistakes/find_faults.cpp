@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
+#include "elastocal/mistakes/missed_springs.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/mistakes/trial_offset.hpp"
@@ -104,27 +106,24 @@ std::optional<FoundFault> FindGeneralFault(const Project& project,
                                            Measurements as_recorded, const RecordedModel& robot,
                                            const Recording& recording,
                                            const CalibrationResult& result) {
-  GeneralFault general{{},
-                       robot.model,
-                       robot.base,
-                       recording,
-                       result.kind,
-                       project.calibration,
-                       as_recorded.validation};
-  std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, project.calibration);
+  const CalibrationOptions& options = project.calibration;
+  GeneralFault general{{},      robot.model,           robot.base, recording, result.kind,
+                       options, as_recorded.validation};
+  std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, options);
   std::optional<RecordingFault> hidden;
   if (robot.knocks.empty()) {
     if (faults.empty()) {
-      hidden = FindTrialOffset(result, robot.base, recording, project.calibration);
+      hidden = FindTrialOffset(result, robot.base, recording, options, general.held_out);
     }
   } else {
     RecordedModel plain = MakeRecordedModel(project, seed, as_recorded, KnockSearch::kNone);
-    const CalibrationResult without = Calibrate(plain.model, as_recorded.calibration, plain.base,
-                                                result.kind, project.calibration);
+    const CalibrationResult without =
+        Calibrate(plain.model, as_recorded.calibration, plain.base, result.kind, options);
     std::vector<RecordingFault> found =
-        FindRecordingFaults(without, as_recorded.calibration, project.calibration);
+        FindRecordingFaults(without, as_recorded.calibration, options);
     if (found.empty() && faults.empty()) {
-      hidden = FindTrialOffset(without, plain.base, as_recorded.calibration, project.calibration);
+      hidden =
+          FindTrialOffset(without, plain.base, as_recorded.calibration, options, general.held_out);
     }
     if (!found.empty() || hidden) {
       faults = std::move(found);
@@ -244,7 +243,17 @@ class FaultsInTurn {
     std::vector<std::string> faults = OfWholeRecording();
     if (!faults.empty()) return faults;
     left_ = MarkerError(comparison_.largest(), recording_, project_.calibration);
-    faults = OfUpByLoads();
+    faults = OfWhatIsLeft();
+    if (faults.empty()) return faults;
+    const double otherwise =
+        few_ && few_->complete ? few_->left : std::numeric_limits<double>::infinity();
+    const std::string springs = FindMissedSprings(project_, seed_, as_recorded_, left_, otherwise);
+    return springs.empty() ? faults : std::vector<std::string>{springs};
+  }
+
+ private:
+  std::vector<std::string> OfWhatIsLeft() {
+    std::vector<std::string> faults = OfUpByLoads();
     if (!faults.empty()) return faults;
     if (!of_slides_.empty() && !scale_is_known_) return {of_slides_};
     faults = OfCoarsePositions();
@@ -254,7 +263,6 @@ class FaultsInTurn {
     return found_ ? OfGeneralFault() : OfFewRowsOrMarkers();
   }
 
- private:
   const CalibrationResult& fit() const { return comparison_.largest(); }
 
   std::optional<FoundFault> General() const {

@@ -67,6 +67,7 @@ class FaultExplanation {
 
   bool complete() const { return complete_; }
   double left() const { return left_; }
+  const std::vector<RecordingFault>& faults() const { return faults_; }
 
   std::string Describe() const {
     const bool single = faults_.size() == 1 && complete_;
@@ -101,13 +102,16 @@ class FaultExplanation {
     Recording recording;
   };
 
+  CalibrationResult Fit(const ErrorModel& model, const BaseParameters& base,
+                        const Recording& recording) const {
+    if (general_.fit) return general_.fit(model, base, recording);
+    return Calibrate(model, recording, base, general_.kind, general_.options);
+  }
   CalibrationResult Fit(const Recording& recording) const {
-    return Calibrate(general_.model, recording, general_.base, general_.kind, general_.options);
+    return Fit(general_.model, general_.base, recording);
   }
   CalibrationResult Fit(const SplitRecording& split) const {
-    return Calibrate(split.model, split.recording,
-                     FindBaseOf(project_, split.model, split.recording), general_.kind,
-                     general_.options);
+    return Fit(split.model, FindBaseOf(project_, split.model, split.recording), split.recording);
   }
 
   static bool IsSame(const RecordingFault& a, const RecordingFault& b) {
@@ -387,7 +391,7 @@ std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
 
 FaultsInWords ExplainFault(const GeneralFault& general, const Project& project) {
   const FaultExplanation explanation(general, project);
-  return {explanation.Describe(), explanation.complete(), explanation.left()};
+  return {explanation.Describe(), explanation.complete(), explanation.left(), explanation.faults()};
 }
 
 }  // namespace elastocal

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/screening/recording_fault.hpp"
 
 namespace elastocal {
+
+/// How a recording is fitted.
+using FitOf =
+    std::function<CalibrationResult(const ErrorModel&, const BaseParameters&, const Recording&)>;
 
 /// The fault that explains most of what a fit leaves, and what was fitted.
 struct GeneralFault {
@@ -18,6 +24,7 @@ struct GeneralFault {
   ModelKind kind = ModelKind::kGeometric;
   CalibrationOptions options;
   Recording held_out = {};  ///< trials for validation, by which gains are placed; may be empty
+  FitOf fit = {};           ///< instead of Calibrate, of robots whose joints are known
 };
 
 /// "arm_4_joint: its positions are 1.05 +- 0.01 times the true ones (--accept NAME corrects it)"
@@ -28,6 +35,7 @@ struct FaultsInWords {
   std::string text;
   bool complete = false;  ///< few faults explain the recording
   double left = 0.0;      ///< rms distance of the markers from a robot fitted without them, m
+  std::vector<RecordingFault> faults = {};
 };
 
 /// The same, once it is known whether it is the only one. What explains most need not be what is

@@ -11,11 +11,6 @@
 namespace elastocal {
 namespace {
 
-constexpr double kSuspicious = 3.0;  // times the error on the trials of the estimate
-/// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
-/// be as good in motion, which statics does not describe.
-constexpr double kBestExpected = 0.03;
-
 /// Whether all chains of a group (TrialGroups) are also in another one.
 bool IsWithin(const std::string& group, const std::string& other) {
   std::istringstream chains(group);
@@ -124,6 +119,12 @@ std::vector<MovedSuspect> MovedSuspects(const std::vector<LabelCluster>& cluster
   std::vector<MovedSuspect> sorted;
   for (const auto& [ratio, suspect] : suspects) sorted.push_back(suspect);
   return sorted;
+}
+
+bool MayBeInertia(const RecordingFault& fault, const Recording& recording) {
+  constexpr double kMostByInertia = 0.02;
+  return fault.kind == FaultKind::kJointGain && fault.trial >= 0 &&
+         recording.trials[Size(fault.trial)].of_motion() && std::abs(fault.size) < kMostByInertia;
 }
 
 }  // namespace elastocal

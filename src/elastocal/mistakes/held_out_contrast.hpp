@@ -6,9 +6,15 @@
 
 #include "elastocal/measurement/labels.hpp"
 #include "elastocal/mistakes/moved_between.hpp"
+#include "elastocal/screening/recording_fault.hpp"
 #include "elastocal/validation/error_table.hpp"
 
 namespace elastocal {
+
+inline constexpr double kSuspicious = 3.0;  ///< times the error on the trials of the estimate
+/// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
+/// be as good in motion, which statics does not describe.
+inline constexpr double kBestExpected = 0.03;
 
 /// A group of chains whose held-out trials the largest model predicts worse than it fits those of
 /// the estimate.
@@ -31,5 +37,9 @@ Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out,
 std::vector<MovedSuspect> MovedSuspects(const std::vector<LabelCluster>& clusters,
                                         const ErrorTable& fitted, const ErrorTable& held_out,
                                         ModelKind kind, const Recording& all);
+
+/// In a sine the acceleration is proportional to the position, and so is what inertia bends: at
+/// half a hertz, a joint that would swing at 5 Hz seems to have a gain of 1 % in such a trial.
+bool MayBeInertia(const RecordingFault& fault, const Recording& recording);
 
 }  // namespace elastocal

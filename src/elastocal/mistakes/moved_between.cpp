@@ -39,7 +39,8 @@ struct Moved {
 };
 
 Moved TakeAsTwo(const Project& project, const CalibrationResult& together, const Recording& all,
-                const CalibrationOptions& options, const MovedSuspect& suspect) {
+                const CalibrationOptions& options, const MovedSuspect& suspect,
+                const FitOf& fit_of) {
   ErrorModel model = together.model;
   Recording split = all;
   std::vector<int> markers = suspect.cluster.markers;
@@ -58,8 +59,9 @@ Moved TakeAsTwo(const Project& project, const CalibrationResult& together, const
     names_there.push_back(moved.names.back() + "(moved)");
   }
   SplitMarkersOf(markers, names_there, suspect.there, model, split);
+  const BaseParameters base = FindBaseOf(project, model, split);
   const CalibrationResult fit =
-      Calibrate(model, split, FindBaseOf(project, model, split), together.kind, options);
+      fit_of ? fit_of(model, base, split) : Calibrate(model, split, base, together.kind, options);
   moved.left = MarkerError(fit, split, options);
   for (std::size_t k = 0; k < markers.size(); ++k) {
     moved.distances.push_back(
@@ -110,12 +112,12 @@ std::string DescribeMoved(const Recording& all, const MovedSuspect& suspect, con
 
 std::string FindMovedBetween(const Project& project, const CalibrationResult& together,
                              const Recording& all, const CalibrationOptions& options,
-                             const std::vector<MovedSuspect>& suspects) {
+                             const std::vector<MovedSuspect>& suspects, const FitOf& fit) {
   const double before = MarkerError(together, all, options);
   double least = kLeftWhereMoved * before;
   std::string found;
   for (std::size_t k = 0; k < std::min(kMostSuspects, suspects.size()); ++k) {
-    const Moved moved = TakeAsTwo(project, together, all, options, suspects[k]);
+    const Moved moved = TakeAsTwo(project, together, all, options, suspects[k], fit);
     if (!(moved.left < least) ||
         *std::max_element(moved.distances.begin(), moved.distances.end()) < kLeastMoved) {
       continue;

@@ -4,14 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <string>
 #include <vector>
 
+#include "elastocal/calibration/prediction.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/measurement/thinned_motions.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/robot/linkage.hpp"
 #include "elastocal/screening/distance_parabola.hpp"
 #include "elastocal/screening/recording_faults.hpp"
+#include "elastocal/validation/transfer.hpp"
 
 namespace elastocal {
 namespace {
@@ -20,6 +25,8 @@ constexpr double kLeastTrialOffset = 0.25 * M_PI / 180.0, kLeastTrialShift = 1e-
 constexpr double kLeftByOffset = 0.5;    // of the squared distances
 constexpr double kLeftOfFit = 0.5;       // of the error of the fit
 constexpr std::size_t kMostOffsets = 4;  // that are undone and fitted
+constexpr int kMostOfMotions = 120;      // moments, of held-out trials
+constexpr double kWorse = 1.05;          // times the error on them: not by chance
 constexpr int kNewtonSteps = 2;
 constexpr double kLeastCurvature = 1e-12;  // of the squared distances
 constexpr int kFewestOfTrial = 3;          // postures
@@ -114,12 +121,26 @@ std::vector<RecordingFault> OffsetsBesideErrors(const CalibrationResult& result,
   return measured;
 }
 
+/// rms distance of the markers of held-out trials, waist and markers being fitted to them, m.
+double ErrorOnHeldOut(const CalibrationResult& result, const BaseParameters& base,
+                      const Recording& held_out, const CalibrationOptions& options) {
+  Recording few = WithThinnedMotions(held_out, kMostOfMotions);
+  AddUnseenMarkers(result.model, few);
+  std::map<std::string, double> errors;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[Size(i)];
+    if (!IsExternal(parameter.kind)) errors[parameter.name] = result.delta[i];
+  }
+  return RefitTo(result.model, few, base, options, errors).metrics_all.rmse_3d;
+}
+
 }  // namespace
 
 std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
                                               const BaseParameters& base,
                                               const Recording& recording,
-                                              const CalibrationOptions& options) {
+                                              const CalibrationOptions& options,
+                                              const Recording& held_out) {
   if (recording.trials.size() < kFewestTrials) return std::nullopt;
   const RobotTree& tree = result.model.tree;
   const Eigen::VectorXd given = SquaresByPosture(result, recording, options);
@@ -131,6 +152,7 @@ std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
   }
   std::stable_sort(offsets.begin(), offsets.end(),
                    [](const TrialOffset& a, const TrialOffset& b) { return a.left < b.left; });
+  std::optional<double> predicted;  // of the held-out trials, by the fit as it is
   double least = kLeftOfFit * MarkerError(result, recording, options);
   std::optional<RecordingFault> found;
   const std::vector<RecordingFault> candidates =
@@ -138,9 +160,13 @@ std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
   for (std::size_t k = 0; k < std::min(kMostOffsets, candidates.size()); ++k) {
     const Recording without = WithoutFault(recording, candidates[k]);
     try {
-      const double left = MarkerError(Calibrate(result.model, without, base, result.kind, options),
-                                      without, options);
+      const CalibrationResult fit = Calibrate(result.model, without, base, result.kind, options);
+      const double left = MarkerError(fit, without, options);
       if (!(left < least)) continue;
+      if (held_out.posture_count() > 0) {
+        if (!predicted) predicted = ErrorOnHeldOut(result, base, held_out, options);
+        if (ErrorOnHeldOut(fit, base, held_out, options) > kWorse * *predicted) continue;
+      }
       least = left;
       found = candidates[k];
     } catch (const InputError&) {

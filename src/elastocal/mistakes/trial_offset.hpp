@@ -14,10 +14,13 @@ namespace elastocal {
 /// the robot of `result` puts them. Where that is 0.25 degrees or 1 mm and more, and takes half of
 /// all squared distances, the offsets of all joints in that trial are estimated beside the errors
 /// of the robot, and the four that explain most are undone, one by one, and the robot fitted again.
-/// Nothing unless one leaves half of the error.
+/// Nothing unless one leaves half of the error, and none without which held-out trials, which do
+/// not have it, are predicted worse: what explains the estimate's trials alone is something else
+/// that the model lacks. `held_out` may be empty.
 std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
                                               const BaseParameters& base,
                                               const Recording& recording,
-                                              const CalibrationOptions& options);
+                                              const CalibrationOptions& options,
+                                              const Recording& held_out = {});
 
 }  // namespace elastocal

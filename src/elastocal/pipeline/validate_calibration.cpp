@@ -11,6 +11,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/transfer_faults.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
@@ -119,6 +120,49 @@ void WarnOfOutliers(ValidationRun& run) {
                          "with outliers");
 }
 
+/// What the calibrated robot errs by on other recordings, as far as its file says, m.
+double ExpectedOf(const StoredCalibration& stored) {
+  return std::max(stored.rmse_3d, stored.held_out.compensated);
+}
+
+/// Faults that the joints as calibrated contradict, waist and markers being fitted.
+void NameFaults(const Project& project, std::optional<std::uint64_t> seed,
+                const Measurements& as_recorded, const RecordedModel& robot,
+                const Measurements& measured, ValidationRun& run) {
+  const double expected = ExpectedOf(run.calibration);
+  if (expected == 0.0) return;
+  std::optional<TransferValidation> refitted;
+  if (run.frozen) {
+    if (!(ErrorOf(run.transfer) > kWorseThanPredicted * expected)) return;
+    refitted = ValidateTransfer(robot.model, measured.calibration, robot.base, project.calibration,
+                                run.calibration.joint_errors);
+  }
+  const auto holds = [&](Measurements corrected) {
+    const RecordedModel plain = MakeRecordedModel(project, seed, corrected, KnockSearch::kNone);
+    return ErrorOn(corrected.calibration, plain, project, run) <= kWorseThanPredicted * expected;
+  };
+  run.mistakes = FindTransferFaults({.project = project,
+                                     .robot = robot,
+                                     .as_recorded = as_recorded,
+                                     .recording = measured.calibration,
+                                     .transfer = refitted ? *refitted : run.transfer,
+                                     .joint_errors = run.calibration.joint_errors,
+                                     .expected = expected,
+                                     .holds = holds});
+}
+
+/// Trials that cannot be used, which nothing is judged by: no longer warnings, as these say them.
+void NameUnused(const std::vector<TrialSummary>& trials, ValidationRun& run) {
+  for (const TrialSummary& trial : trials) {
+    if (trial.refused.empty()) continue;
+    std::erase(run.warnings, "trial " + trial.trial.name + ": not used: " + trial.refused);
+    run.not_judged.push_back(fmt::format(
+        "trial {} is not judged ({}): record it again or, to judge the others, take it out of "
+        "experiment.yaml",
+        trial.trial.name, trial.refused));
+  }
+}
+
 /// Warns where the calibration was made from this recording, or predicted less than it shows.
 void CompareWithPrediction(const Project& project, const std::filesystem::path& recording,
                            ValidationRun& run) {
@@ -165,6 +209,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
                     .urdf = {},
                     .frozen = options.frozen,
                     .mistakes = {},
+                    .not_judged = {},
                     .warnings = {}};
   Project project = given;
   project.elasticity = ElasticityOf(run.calibration, given);
@@ -189,6 +234,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
   for (const RecordingMistake& mistake : mistakes) {
     run.mistakes.push_back(DescribeMistake(mistake));
   }
+  if (run.mistakes.empty()) NameFaults(project, options.seed, as_recorded, robot, measured, run);
   if (!run.frozen) {
     run.urdf = RefitLike(run.transfer.calibrated, robot.model, measured.calibration, robot.base,
                          project.calibration, GeometryInUrdf(run.calibration, robot.model));
@@ -196,6 +242,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
   run.expected_error = ExpectedError(robot.model, measured.calibration, project.calibration.prior);
   run.recording = std::move(measured.calibration);
   run.warnings.insert(run.warnings.end(), measured.warnings.begin(), measured.warnings.end());
+  NameUnused(measured.trials, run);
   WarnOfOutliers(run);
   CompareWithPrediction(project, recording, run);
   return run;
@@ -249,6 +296,7 @@ std::string MakeValidationJson(const ValidationRun& run) {
                                      {"in_sds", place.in_sds()}});
   }
   json["mistakes"] = run.mistakes;
+  json["not_judged"] = run.not_judged;
   json["warnings"] = run.warnings;
   return JsonText(json);
 }

@@ -24,8 +24,10 @@ struct ValidationRun {
   std::optional<Refit> urdf;    ///< the robot as the calibrated URDF has it; nothing if frozen
   double expected_error = 0.0;  ///< of a robot that was never calibrated (ExpectedError), m
   bool frozen = false;          ///< whether nothing was fitted
-  std::vector<std::string> mistakes;  ///< of the recording, which say nothing of the robot
-  std::vector<std::string> warnings;  ///< what a user should know of, a sentence each
+  /// Of the recording, or contradictions to the calibration: its figures judge nothing.
+  std::vector<std::string> mistakes;
+  std::vector<std::string> not_judged;  ///< trials that cannot be used, a sentence each
+  std::vector<std::string> warnings;    ///< what a user should know of, a sentence each
   /// Errors that the calibration expects, and what the recording shows, m: by the calibrated URDF,
   /// or by the calibrated model if frozen. Expected 0: the calibration left nothing out.
   double predicted = 0.0, shown = 0.0;
@@ -60,7 +62,8 @@ struct TransferOptions {
 
 /// Applies a stored calibration to another recording of the same robot: only waist and markers are
 /// fitted anew, for the calibrated and for the nominal robot (paper, section 6.1.4), or nothing.
-/// Mistakes in a recording that explain its misfit are named (FindMistakesBy).
+/// Mistakes in a recording that explain its misfit are named (FindMistakesBy), and faults by which
+/// it contradicts the calibration (FindTransferFaults).
 ///
 /// `calibration`: the folder that calibrate wrote to, or its calibration.yaml. `recording`: a
 /// posture table or a recording folder; trials for validation will do. Throws InputError: files
