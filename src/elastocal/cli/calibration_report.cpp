@@ -84,16 +84,16 @@ std::string HeldOutText(const CalibrationRun& run) {
   const auto between = [](const RmseInterval& interval) {
     return Millimetres(interval.low, 2) + " to " + Millimetres(interval.high, 2) + " mm";
   };
-  std::string text = ".\n  On held-out postures" + WithoutOutliersText(run) + ". ";
+  std::string text = ".\n  On held-out postures" + WithoutOutliersText(run) + ".\n";
   if (deployment.urdf_interval) {
-    text += "Of many such postures, 95 % interval: " + between(*deployment.urdf_interval);
+    text += "  Of many such postures, 95 % interval: " + between(*deployment.urdf_interval);
     if (deployment.compensated_interval) {
-      text += " by the URDF, " + between(*deployment.compensated_interval) + " with compensation";
+      text += " and " + between(*deployment.compensated_interval);
     }
-    text += ". ";
+    text += ".\n";
   }
   return text +
-         "Another day and other postures may show more: before deploying, validate on another "
+         "  Another day and other postures may show more: before deploying, validate on another "
          "recording.\n";
 }
 
