@@ -11,6 +11,7 @@
 #include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/find_faults.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
 
