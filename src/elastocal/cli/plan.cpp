@@ -167,10 +167,10 @@ int Plan(const PlanCommand& command) {
   const Progress progress = TerminalProgress("planned chain", quiet);
   const MotionPlanOptions options = PlanOptions(command);
   const MotionTrialOptions tries = TrialOptions(command);
-  const MotionPlan plan =
-      command.kind.empty()
-          ? PlanMotion(project, postures, options, progress)
-          : PlanValidationMotion(project, KindNamed(command.kind), tries.seed, options, progress);
+  MotionPlan plan = command.kind.empty() ? PlanMotion(project, postures, options, progress)
+                                         : PlanValidationMotion(project, KindNamed(command.kind),
+                                                                tries.seed, options, progress);
+  CountToOwnLimits(described, project, options, plan);
   PrintPlan(project, plan, command.common);
   if (Refuse(plan, command.unbalanced)) return kNotConverged;
 
