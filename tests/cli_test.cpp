@@ -76,6 +76,9 @@ TEST_F(Program, WrongUsageIsSaidInTheProgramsOwnWords) {
        "--kind: found 'sin'; expected sine, random or repeatability; did you mean 'sine'?"},
       {"export out --format urdf -o f --min-gain -5",
        "--min-gain: found '-5'; expected a number from 0 to 100"},
+      {"calibrate p.yaml --recordings x -o out",
+       "--recording is required. The following arguments were not expected: '--recordings', 'x'; "
+       "did you mean '--recording'?"},
       {"", "A command is required\nelastocal --help explains what there is."},
       {"calibrate", "elastocal calibrate --help explains the options."}};
   for (const auto& [words, message] : wrong) {

@@ -72,7 +72,7 @@ TEST_F(Plan, WritesAMotionAndLeavesOutWhatWouldCollide) {
   EXPECT_NE(std::find(motion.support.begin(), motion.support.end(), right), motion.support.end());
   const std::string trajectory = ReadFile(Path("trajectory.yaml"));
   EXPECT_NE(trajectory.find("joint_names:\n  - torso_1_joint\n"), std::string::npos);
-  EXPECT_NE(trajectory.find("time_from_start: {secs: 1, nsecs: 50000000}"), std::string::npos);
+  EXPECT_NE(trajectory.find("time_from_start: {sec: 1, nanosec: 50000000}"), std::string::npos);
 }
 
 TEST_F(Plan, SaysWhichConstraintMakesItImpossible) {

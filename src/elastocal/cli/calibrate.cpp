@@ -110,7 +110,7 @@ void AddInputs(CLI::App& command, CalibrateOptions& options) {
           "--recording", options.recordings,
           "Table of static postures (CSV), folders with experiment.yaml, or tables of touches")
       ->required()
-      ->type_name("FILE");
+      ->type_name("DIR|FILE");
   command.add_option("-o,--output", options.output, "Folder for the results")
       ->required()
       ->check(IsNamed)

@@ -227,7 +227,7 @@ std::string ParametersText(const CalibrationResult& result) {
   if (order.empty()) return "\nNo parameter differs from nominal at 95 %\n";
   const std::size_t all = order.size();
   order.resize(std::min(all, kMostParameters));
-  return fmt::format("\nFurthest from nominal, of {} parameters that differ from it at 95 %\n",
+  return fmt::format("\nFurthest from nominal, of {} parameters that differ from it at 95 % (*)\n",
                      all) +
          EstimateTable(result, order);
 }

@@ -13,6 +13,7 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/text_table.hpp"
 #include "elastocal/pipeline/check_json.hpp"
+#include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/robot/parameter_names.hpp"
 
 namespace elastocal::cli {
@@ -124,7 +125,9 @@ std::string OtherExplanations(const CalibrationComparison& comparison) {
 std::string Conclusion(const CalibrationComparison& comparison, double level) {
   const std::vector<std::string> moved = MovedJoints(comparison);
   if (!moved.empty()) {
-    return "Moved by more than their uncertainty: " + Joined(moved) + "\n" +
+    const std::string question = AskWhereMostMoved(moved.size(), comparison.joints.size());
+    return (question.empty() ? "" : "Most joints have moved" + question + "\n") +
+           "Moved by more than their uncertainty: " + Joined(moved) + "\n" +
            OtherExplanations(comparison);
   }
   if (!comparison.changed) {

@@ -65,7 +65,7 @@ void AddAppliedCalibration(CLI::App& command, std::string& project, std::string&
                       (tables ? "; with contact or instruments, one or several tables" : ""))
       ->required()
       ->expected(tables ? -1 : 1)
-      ->type_name("FILE");
+      ->type_name("DIR|FILE");
 }
 
 void AddCalibratedRobot(CLI::App& command, std::string& calibration, std::string& project) {

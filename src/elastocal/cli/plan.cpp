@@ -29,6 +29,7 @@ struct PlanCommand {
   std::string project, postures, output, trajectory, folder;
   std::string kind;  ///< of a validation motion; empty: postures are given
   std::optional<double> zmp_margin_mm, lift_mm, inset_mm, approach_mm;
+  std::string ros = "2";  ///< whose stamps the trajectory has
   bool unbalanced = false, unstabilised = false;
   double limit_margin_deg = 0.0;
   MotionPlanOptions options;
@@ -151,6 +152,7 @@ int Plan(const PlanCommand& command) {
   }
   MotionFiles files(command.output);
   files.trajectory = command.trajectory;
+  files.ros = command.ros == "1" ? RosVersion::kRos1 : RosVersion::kRos2;
   if (!command.folder.empty()) files.AddChains(command.folder, chains);
   OutputSet outputs;
   std::vector<std::filesystem::path> inputs = {command.project, project.urdf};
@@ -165,10 +167,10 @@ int Plan(const PlanCommand& command) {
   const Progress progress = TerminalProgress("planned chain", quiet);
   const MotionPlanOptions options = PlanOptions(command);
   const MotionTrialOptions tries = TrialOptions(command);
-  const MotionPlan plan =
-      command.kind.empty()
-          ? PlanMotion(project, postures, options, progress)
-          : PlanValidationMotion(project, KindNamed(command.kind), tries.seed, options, progress);
+  MotionPlan plan = command.kind.empty() ? PlanMotion(project, postures, options, progress)
+                                         : PlanValidationMotion(project, KindNamed(command.kind),
+                                                                tries.seed, options, progress);
+  CountToOwnLimits(described, project, options, plan);
   PrintPlan(project, plan, command.common);
   if (Refuse(plan, command.unbalanced)) return kNotConverged;
 
@@ -229,10 +231,18 @@ void AddFiles(CLI::App& command, PlanCommand& options) {
       ->required()
       ->check(IsNamed)
       ->type_name("FILE");
+  auto* trajectory =
+      command
+          .add_option("--trajectory", options.trajectory,
+                      "Also as a ROS trajectory_msgs/JointTrajectory (YAML) of the joints of all "
+                      "chains, and of others that move")
+          ->type_name("FILE");
   command
-      .add_option("--trajectory", options.trajectory,
-                  "Also as a ROS trajectory_msgs/JointTrajectory (YAML)")
-      ->type_name("FILE");
+      .add_option("--ros", options.ros,
+                  "Stamps of the trajectory: sec and nanosec (2), or secs and nsecs (1)")
+      ->transform(OneOf({"1", "2"}))
+      ->needs(trajectory)
+      ->capture_default_str();
   command
       .add_option("--per-chain", options.folder,
                   "Also a motion for each chain in this folder, without the changes of support: "

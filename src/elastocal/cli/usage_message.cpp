@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/cli/usage_message.hpp"
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -58,6 +60,12 @@ bool Is(const CLI::Error& error) {
 std::string OneLine(const CLI::App& app, const CLI::Error& error) {
   const std::string message = error.what();
   if (Is<CLI::ExtrasError>(error)) return UnknownWords(app);
+  if (Is<CLI::RequiredError>(error)) {
+    const std::vector<std::string> words = app.remaining(true);
+    const bool misspelt = std::ranges::any_of(
+        words, [](const std::string& word) { return word.starts_with("--") && word.size() > 2; });
+    if (misspelt) return message + ". " + UnknownWords(app);
+  }
   if (Is<CLI::ArgumentMismatch>(error)) return WrongCount(message);
   if (Is<CLI::ExcludesError>(error)) {
     const std::string between = " excludes ";

@@ -11,6 +11,7 @@
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/readers/joint_columns.hpp"
 #include "elastocal/readers/times.hpp"
 #include "elastocal/tables/table_writer.hpp"
 #include "elastocal/tables/text.hpp"
@@ -71,7 +72,10 @@ ColumnRoles LogRoles(const Table& table, const Project& project) {
     for (const std::string& column : WrenchColumns(sensor)) roles.emplace(column, quantity++);
   }
   for (const std::string& column : table.header()) {
-    if (column.ends_with("_velocity")) roles.emplace(column, kPassedOver);
+    const std::string plain = PlainColumnName(column);
+    if (plain.empty() || plain.ends_with("_velocity")) roles.emplace(column, kPassedOver);
+    const auto known = roles.find(plain);
+    if (known != roles.end()) roles.emplace(column, known->second);
   }
   return roles;
 }

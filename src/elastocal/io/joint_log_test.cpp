@@ -51,6 +51,21 @@ TEST(JointLog, ReadsPositionsAndTorques) {
   EXPECT_TRUE(log.torques.col(2).array().isNaN().all());
 }
 
+// As PlotJuggler exports a topic of joint states.
+TEST(JointLog, ReadsNamesThatArePathsOfATopic) {
+  const JointLog log = ReadLog(
+      "__time,/joint_states/elbow_joint/effort,/joint_states/elbow_joint/position,"
+      "/joint_states/elbow_joint/velocity,/joint_states/header/seq,/j/rail_joint/position\n"
+      "100.5,-5,0.1,,7,0.2\n100.75,-6,0.2,,8,0.3\n");
+  EXPECT_EQ(log.names, (std::vector<std::string>{"elbow_joint", "rail_joint"}));
+  EXPECT_EQ(log.time_s, Eigen::Vector2d(100.5, 100.75));
+  EXPECT_EQ(log.positions, (Eigen::Matrix2d() << 0.1, 0.2, 0.2, 0.3).finished());
+  EXPECT_EQ(log.torques.col(0), Eigen::Vector2d(-5, -6));
+  ExpectLogError("__time,/joint_states/elbow_joint/position,/joint_states/wrist/position\n0,1,2\n",
+                 {"unknown column '/joint_states/wrist/position'"});
+  ExpectLogError("__time,/joint_states/elbow_joint/position,elbow_joint\n0,1,2\n", {"elbow_joint"});
+}
+
 // Loggers write rows until the robot answers.
 TEST(JointLog, EmptyRowsAboveTheFirstSampleArePassedOver) {
   const std::string begin = "time,elbow_joint,elbow_joint_torque,turret_joint\n\n0.5,,,\n,nan,,\n";

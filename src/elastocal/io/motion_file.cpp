@@ -29,6 +29,11 @@ struct MotionColumns {
 /// `timed`: of a motion, whose column of time is read and which has no markers.
 MotionColumns FindMotionColumns(const Table& table, const Project& project, bool timed) {
   constexpr int kTime = 0, kSupport = 1, kCoordinates = 2;
+  if (timed && table.header().front().starts_with("robot:")) {
+    table.Fail(
+        "this is a posture file (YAML), which 'simulate' plays with --postures and of which 'plan' "
+        "makes a motion; a trajectory was expected, a table with a column 'time'");
+  }
   const RobotTree& tree = project.tree;
   ColumnRoles roles;
   for (const Joint& joint : tree.joints) {

@@ -47,6 +47,11 @@ TEST(MotionFile, ReadsATrajectory) {
   EXPECT_EQ(motion.line, (std::vector<int>{2, 3}));
 }
 
+TEST(MotionFile, SaysWhereAPostureFileBelongs) {
+  ExpectMotionError("robot: \"arm6\"\nchains:\n  - name: \"arm\"\n",
+                    {"m.csv:1", "posture file", "--postures", "'plan'"});
+}
+
 TEST(MotionFile, ReadsWhatStandsOnTheFloor) {
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   const int left = FindLink(project.tree, "left_sole_link");

@@ -2,7 +2,11 @@
 #include "elastocal/io/posture_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <set>
+#include <string_view>
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/motor_columns.hpp"
@@ -12,6 +16,8 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/marker_units.hpp"
+#include "elastocal/readers/joint_columns.hpp"
+#include "elastocal/readers/times.hpp"
 #include "elastocal/tables/table_writer.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -54,7 +60,38 @@ void CheckMovingJoints(const Table& table, const Project& project, const Posture
   }
 }
 
+/// Throws InputError for a table whose columns are a time and quantities of joints, and nothing
+/// else, one at least of which only logs have.
+void RefuseJointLog(const Table& table, const Project& project) {
+  constexpr std::array<std::string_view, 4> kOfLogs = {"_torque", "_effort", "_velocity",
+                                                       "_position"};
+  std::set<std::string, std::less<>> joints;
+  for (const Joint& joint : project.tree.joints) {
+    joints.insert({joint.name, JointColumn(project, joint.name)});
+  }
+  bool timed = false, logged = false;
+  for (const std::string& column : table.header()) {
+    const std::string plain = PlainColumnName(column);
+    if (plain == project.recording.time || TimeUnitOfName(plain)) {
+      timed = true;
+    } else if (const auto ending = std::ranges::find_if(
+                   kOfLogs, [&](std::string_view end) { return plain.ends_with(end); });
+               ending != kOfLogs.end() &&
+               joints.contains(plain.substr(0, plain.size() - ending->size()))) {
+      logged = true;
+    } else if (!joints.contains(plain)) {
+      return;
+    }
+  }
+  if (!timed || !logged) return;
+  table.Fail(
+      "this is a joint log: its columns are the time and quantities of joints, none of markers; it "
+      "needs a folder with experiment.yaml, which names it and the file of the markers "
+      "(docs/formats.md, Recording folder); a posture table was expected");
+}
+
 PostureColumns FindPostureColumns(const Table& table, const Project& project) {
+  RefuseJointLog(table, project);
   const RobotTree& tree = project.tree;
   const int coordinates = tree.coordinate_count();
   const int first_marker = 1 + coordinates;

@@ -183,6 +183,14 @@ TEST(PostureTable, SaysWhatARecordingOverTimeNeeds) {
   refused(SourceFile("tests/recordings/joints_matrix.npz"), "NumPy .npz");
 }
 
+TEST(PostureTable, SaysWhatAJointLogNeeds) {
+  ExpectTableError("t,elbow_joint,elbow_joint_torque\n0,0.1,2\n",
+                   {"t.csv:1", "joint log", "folder with experiment.yaml"});
+  // A posture table with a column too many has no other name for it.
+  ExpectTableError("t,A_x,A_y,A_z,elbow_joint,elbow_joint_torque\n0,1,2,3,0.1,2\n",
+                   {"unknown column 'elbow_joint_torque'"});
+}
+
 TEST(PostureTable, SuspectsMillimetresAndDegrees) {
   // The arm reaches less than 2 m; a hand that moves by 400 mm is not 400 m away.
   ExpectTableError(kTableHeader + "1,100,2,3,0,0,0,0\n1,500,2,3,0,0,0,0.1\n",

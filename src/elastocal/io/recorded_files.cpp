@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "elastocal/io/joint_log.hpp"
@@ -227,6 +228,8 @@ JointLog ReadPlainLog(const ByteSource& source, const std::string& time_unit) {
         "this is no recording of a known format, nor a joint log: there is no column 't' or "
         "'time'");
   }
+  std::vector<std::string> names;
+  std::ranges::transform(header, std::back_inserter(names), PlainColumnName);
   std::vector<double> time;
   std::map<std::string, std::vector<double>> columns;
   const auto is_empty = [&] {
@@ -243,9 +246,10 @@ JointLog ReadPlainLog(const ByteSource& source, const std::string& time_unit) {
       if (header.begin() + static_cast<std::ptrdiff_t>(i) == at) continue;
       const int column = static_cast<int>(i);
       if (table.CountsRows(column)) continue;
-      const bool torque = header[i].ends_with("_torque") || header[i].ends_with("_effort");
-      columns[header[i]].push_back(torque && IsGap(table.Cell(column)) ? kNaN
-                                                                       : table.Number(column));
+      const std::string& name = names[i];
+      if (name.empty()) continue;
+      const bool torque = name.ends_with("_torque") || name.ends_with("_effort");
+      columns[name].push_back(torque && IsGap(table.Cell(column)) ? kNaN : table.Number(column));
     }
   }
   if (time.empty()) throw InputError(source.name() + ": no row below the header");

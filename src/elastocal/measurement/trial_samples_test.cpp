@@ -319,6 +319,15 @@ TEST(SampleTrial, ReportsMarkersItDoesNotFindOrKnow) {
   EXPECT_NE(Sample(played).summary.refused.find("none of its markers"), std::string::npos);
 }
 
+TEST(SampleTrial, NamesTheLabelThatIsNearlyThatOfAMissingMarker) {
+  ScriptedTrial played = PlayStanding({.postures = 3});
+  played.markers.names[7] = "robot:SHNK_2";
+  EXPECT_TRUE(Names(Sample(played).summary, {"never seen: SHANK_2", "'robot:SHNK_2' for SHANK_2"}));
+  played.markers.names[7] = "NEW_0001";
+  EXPECT_TRUE(Names(Sample(played).summary, {"never seen: SHANK_2"}));
+  EXPECT_FALSE(Names(Sample(played).summary, {"NEW_0001"}));
+}
+
 TEST(MergeTrials, PutsTrialsBelowEachOther) {
   const MarkedRobot robot = WaistAndLeg();
   const ScriptedTrial played = PlayStanding({.postures = 6});

@@ -5,6 +5,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "elastocal/math/input_error.hpp"
+
 namespace elastocal {
 namespace {
 
@@ -50,7 +52,7 @@ class Finder {
     for (const ClusterLabels& labels : summary_.labels) AddLabels(labels);
     AddOutliers();
     if (!summary_.markers_missing.empty()) {
-      Add("never seen: " + Join(summary_.markers_missing));
+      Add("never seen: " + Join(summary_.markers_missing) + Misspelt());
     }
     if (summary_.reference_missing) {
       Add("no reference length of the project is seen; the scale of the cameras is not checked");
@@ -86,6 +88,7 @@ class Finder {
     }
   }
 
+<<<<<<< HEAD
   // Markers that are off in most frames, if they are of as many clusters.
   std::vector<int> OffThroughout(const std::vector<int>& frames) const {
     std::vector<int> markers;
@@ -99,6 +102,26 @@ class Finder {
       if (here > 1) return {};
     }
     return markers;
+=======
+  // The labels of the file that no link names and that are nearly those of missing markers.
+  std::string Misspelt() const {
+    std::vector<std::string> pairs;
+    for (const std::string& marker : summary_.markers_missing) {
+      std::string nearest;
+      int least = 2 + static_cast<int>(marker.size()) / 4;
+      for (const std::string& label : summary_.markers_unknown) {
+        // Cameras put the name of a subject first: gantor:L_FOOT_1.
+        const int edits = EditDistance(marker, label.substr(label.rfind(':') + 1));
+        if (edits >= least) continue;
+        least = edits;
+        nearest = label;
+      }
+      if (!nearest.empty()) pairs.push_back("'" + nearest + "' for " + marker);
+    }
+    if (pairs.empty()) return "";
+    return "; is a label misspelt? The file has " + Join(pairs) +
+           ", which no link of the project names";
+>>>>>>> 23f7d1a3b0666da1093dd3e88c3f920e7b7de3f9
   }
 
   // Single outliers are normal for cameras; a marker that is off for long was touched.

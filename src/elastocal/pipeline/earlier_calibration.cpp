@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -224,8 +226,25 @@ EarlierEstimate ForgetMoved(const JointCheck& check, const EarlierEstimate& earl
   return left;
 }
 
+std::string AskWhereMostMoved(std::size_t moved, std::size_t joints) {
+  constexpr std::size_t kFewest = 3;
+  return moved >= kFewest && 2 * moved > joints ? ": another robot, or joints that were homed anew?"
+                                                : "";
+}
+
 std::vector<std::string> DescribeForgotten(const JointCheck& check, const std::string& source) {
   std::vector<std::string> texts;
+  std::set<std::string> joints;
+  for (const auto* suspects : {&check.joints, &check.moved}) {
+    for (const JointSuspect& joint : *suspects) joints.insert(joint.joint);
+  }
+  const std::string question = AskWhereMostMoved(check.moved.size(), joints.size());
+  if (!question.empty()) {
+    texts.push_back(fmt::format(
+        "{} of {} joints have moved since {}{} The calibration of another robot is no prior of "
+        "this one: leave out --prior",
+        check.moved.size(), joints.size(), source, question));
+  }
   for (const JointSuspect& joint : check.moved) {
     texts.push_back(joint.joint + ": has moved since " + source +
                     ", which counts for nothing there");

@@ -71,6 +71,10 @@ EarlierEstimate MostProbable(const JointCheck& check, const CalibrationResult& e
 /// were and cannot have moved in place of a joint.
 EarlierEstimate KnownAfter(const EarlierFit& fit, double days, const CalibrationOptions& options);
 
+/// ": another robot, or joints that were homed anew?" where most of a robot's joints, three at
+/// least, have moved; otherwise an empty text. Nobody mends as many joints at once.
+std::string AskWhereMostMoved(std::size_t moved, std::size_t joints);
+
 /// A sentence for each joint whose earlier estimate does not count any more. `source`: the earlier
 /// calibration.
 std::vector<std::string> DescribeForgotten(const JointCheck& check, const std::string& source);

@@ -77,6 +77,14 @@ TEST(RecordingInfoTest, RowsThatAreSecondsApartAreNoLogUnlessAUnitIsGiven) {
   EXPECT_NEAR(log.log_rate_hz, 100.0, 1e-9);
 }
 
+TEST(RecordingInfoTest, OfARecordingFolderAFileIsAskedFor) {
+  const ScratchFolder folder;
+  folder.Write("experiment.yaml", "trials: []\n");
+  const std::filesystem::path inside = std::filesystem::path(folder.Write("a", "")).parent_path();
+  ExpectInputError([&] { DescribeRecording(inside, {}, 8); },
+                   {"is a folder", "one of those that its experiment.yaml names"});
+}
+
 TEST(RecordingInfoTest, KnowsAPostureTableByItsColumns) {
   const ScratchFolder folder;
   const std::string header = "t,A_x,A_y,A_z,hip,knee,B_x,B_y,B_z,C_x\n";

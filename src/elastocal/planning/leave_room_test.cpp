@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/planning/plan_motion.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/test_files.hpp"
 
@@ -27,6 +28,25 @@ TEST(LeaveRoom, MovesTheLimitsOfTurningJointsAndThoseOfPostures) {
   EXPECT_NEAR(narrow.motion.lower[c] - after.lower, inside, 1e-12);
   EXPECT_NEAR(after.upper - narrow.motion.upper[c], inside, 1e-12);
   EXPECT_EQ(LeaveRoom(project, 0.0).tree.joints[joint].limits.lower, before.lower);
+}
+
+// Six degrees left free and 0.57 of margin are 6.57 to the joint's own limit.
+TEST(LeaveRoom, APlanCountsToTheJointsOwnLimits) {
+  const Project own = ReadProject(SourceFile("models/talos/project.yaml"));
+  const Project narrow = LeaveRoom(own, 6.0 * kOneDeg);
+  MotionPlan plan;
+  plan.margins.position = {0.6 * kOneDeg, 3, FindJoint(own.tree, "leg_left_4_joint")};
+  plan.limits.resize(2);
+  plan.limits[0].what = "torque, % of limit";
+  plan.limits[0].worst = "50";
+  plan.limits[1].what = "joint to end of range, deg";
+  CountToOwnLimits(own, narrow, {}, plan);
+  EXPECT_NEAR(plan.margins.position.value, 6.6 * kOneDeg, 1e-12);
+  EXPECT_EQ(plan.limits[0].worst, "50");
+  EXPECT_EQ(plan.limits[1].worst, "6.60");
+  EXPECT_EQ(plan.limits[1].limit, "6.57");
+  CountToOwnLimits(own, own, {}, plan);
+  EXPECT_EQ(plan.limits[1].worst, "6.60");
 }
 
 // A joint of 20 degrees keeps 16 of them; one that slides keeps all.

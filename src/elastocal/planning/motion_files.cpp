@@ -98,8 +98,11 @@ void SetMotionFiles(const MotionFiles& files, const Project& project, const Moti
   outputs.Set(files.motion, FormatMotionTable(project.tree, plan.whole));
   outputs.Set(files.margins, FormatMotionSummary(project, plan, trials));
   if (!files.trajectory.empty()) {
+    const JointMotion& motion = plan.whole.motion;
     outputs.Set(files.trajectory,
-                FormatJointTrajectory(project.tree, plan.whole.motion, kTrajectoryStep));
+                FormatJointTrajectory(project.tree,
+                                      CommandedCoordinates(project.tree, project.chains, motion),
+                                      motion, kTrajectoryStep, files.ros));
   }
   if (files.chains.empty()) return;
   const std::vector<PlannedMotion> motions = ChainMotions(plan);

@@ -271,4 +271,22 @@ std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& mo
   return trials;
 }
 
+void CountToOwnLimits(const Project& own, const Project& narrow, const MotionPlanOptions& options,
+                      MotionPlan& plan) {
+  Worst& position = plan.margins.position;
+  if (position.index < 0) return;
+  const auto lower = [&](const Project& project) {
+    return project.tree.joints[Size(position.index)].limits.lower;
+  };
+  const double room = lower(narrow) - lower(own);
+  if (!(room > 0.0)) return;
+  position.value += room;
+  const auto degrees = [](double angle) { return fmt::format("{:.2f}", angle * 180.0 / M_PI); };
+  for (LimitUse& use : plan.limits) {
+    if (!use.what.starts_with("joint to end of range")) continue;
+    use.worst = degrees(position.value);
+    use.limit = degrees(options.limits.position_margin + room);
+  }
+}
+
 }  // namespace elastocal

@@ -102,6 +102,11 @@ struct MotionTrial {
   StandingRun run;
 };
 
+/// Of a plan for a robot with nearer limits (LeaveRoom): the distance to the end of a joint's range
+/// is counted to the joint's own limit, and so is what it has to be.
+void CountToOwnLimits(const Project& own, const Project& narrow, const MotionPlanOptions& options,
+                      MotionPlan& plan);
+
 /// Plays a motion on robots with errors that stand free (MuJoCo). Progress counts robots. Throws
 /// InputError for a project without soles.
 std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& motion,
@@ -114,6 +119,7 @@ std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& mo
 struct MotionFiles {
   std::filesystem::path motion, margins;
   std::filesystem::path trajectory = {};  ///< empty: none
+  RosVersion ros = RosVersion::kRos2;     ///< of the trajectory's stamps
   std::vector<std::filesystem::path> chains = {};
 
   explicit MotionFiles(const std::filesystem::path& output);

@@ -114,11 +114,40 @@ bool IsMotionTable(const RobotTree& tree, const std::string& text) {
   return true;
 }
 
-std::string FormatJointTrajectory(const RobotTree& tree, const JointMotion& motion, int every) {
+std::vector<int> CommandedCoordinates(const RobotTree& tree, const std::vector<Chain>& chains,
+                                      const JointMotion& motion) {
+  std::vector<bool> commanded(static_cast<std::size_t>(tree.coordinate_count()), false);
+  for (const Chain& chain : chains) {
+    const Link& tip = tree.links[static_cast<std::size_t>(chain.tip_link)];
+    for (const int k : JointsToBody(tree, tip.body)) {
+      const Joint& joint = tree.joints[static_cast<std::size_t>(k)];
+      if (!joint.mimic) commanded[static_cast<std::size_t>(joint.coordinate)] = true;
+    }
+  }
+  std::vector<int> coordinates;
+  for (int c = 0; c < tree.coordinate_count(); ++c) {
+    const auto q = motion.q.col(c);
+    if (commanded[static_cast<std::size_t>(c)] || q.maxCoeff() > q.minCoeff()) {
+      coordinates.push_back(c);
+    }
+  }
+  return coordinates;
+}
+
+std::string FormatJointTrajectory(const RobotTree& tree, const std::vector<int>& coordinates,
+                                  const JointMotion& motion, int every, RosVersion ros) {
+  const auto stamp = [&](long long nanoseconds) {
+    const long long seconds = nanoseconds / 1000000000, rest = nanoseconds % 1000000000;
+    return ros == RosVersion::kRos1 ? fmt::format("{{secs: {}, nsecs: {}}}", seconds, rest)
+                                    : fmt::format("{{sec: {}, nanosec: {}}}", seconds, rest);
+  };
   Buffer out;
   const auto put = std::back_inserter(out);
-  fmt::format_to(put, "header:\n  stamp: {{secs: 0, nsecs: 0}}\n  frame_id: ''\njoint_names:\n");
-  for (const std::string& joint : JointNames(tree)) fmt::format_to(put, "  - {}\n", joint);
+  fmt::format_to(put, "header:\n  stamp: {}\n  frame_id: ''\njoint_names:\n", stamp(0));
+  const std::vector<std::string> names = JointNames(tree);
+  for (const int c : coordinates) {
+    fmt::format_to(put, "  - {}\n", names[static_cast<std::size_t>(c)]);
+  }
   fmt::format_to(put, "points:\n");
   const Eigen::Index last = motion.q.rows() - 1;
   for (Eigen::Index i = 0; i <= last; i = i == last ? last + 1 : std::min(i + every, last)) {
@@ -126,13 +155,13 @@ std::string FormatJointTrajectory(const RobotTree& tree, const JointMotion& moti
     const Eigen::Index after = std::min(i + 1, last);
     const double span = motion.time_s[after] - motion.time_s[before];
     const Eigen::RowVectorXd speed = (motion.q.row(after) - motion.q.row(before)) / span;
+    const Eigen::RowVectorXd position = motion.q.row(i);
     fmt::format_to(put, "  - positions: ");
-    AppendList(out, motion.q.row(i), "{:.9g}");
+    AppendList(out, Eigen::RowVectorXd(position(coordinates)), "{:.9g}");
     fmt::format_to(put, "\n    velocities: ");
-    AppendList(out, speed, "{:.6g}");
-    const long long nanoseconds = std::llround((motion.time_s[i] - motion.time_s[0]) * 1e9);
-    fmt::format_to(put, "\n    time_from_start: {{secs: {}, nsecs: {}}}\n",
-                   nanoseconds / 1000000000, nanoseconds % 1000000000);
+    AppendList(out, Eigen::RowVectorXd(speed(coordinates)), "{:.6g}");
+    const double after_start = motion.time_s[i] - motion.time_s[0];
+    fmt::format_to(put, "\n    time_from_start: {}\n", stamp(std::llround(after_start * 1e9)));
   }
   return fmt::to_string(out);
 }

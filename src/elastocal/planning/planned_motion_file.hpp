@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
+#include "elastocal/project/project.hpp"
 #include "elastocal/robot/joint_motion.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 
@@ -26,8 +28,17 @@ std::string FormatMotionTable(const RobotTree& tree, const PlannedMotion& planne
 /// them.
 bool IsMotionTable(const RobotTree& tree, const std::string& text);
 
-/// As a ROS trajectory_msgs/JointTrajectory in YAML: positions of all joints that are no mimics and
+/// The coordinates that a controller is told: those of joints that carry a tip of `chains`, and
+/// others that move. Casters, wheels and fingers that nothing moves are none.
+std::vector<int> CommandedCoordinates(const RobotTree& tree, const std::vector<Chain>& chains,
+                                      const JointMotion& motion);
+
+/// How stamps are written: sec and nanosec (ROS 2), or secs and nsecs (ROS 1).
+enum class RosVersion { kRos1, kRos2 };
+
+/// As a ROS trajectory_msgs/JointTrajectory in YAML: positions of the joints `coordinates` and
 /// velocities (central differences), every `every`-th sample and the last one.
-std::string FormatJointTrajectory(const RobotTree& tree, const JointMotion& motion, int every);
+std::string FormatJointTrajectory(const RobotTree& tree, const std::vector<int>& coordinates,
+                                  const JointMotion& motion, int every, RosVersion ros);
 
 }  // namespace elastocal

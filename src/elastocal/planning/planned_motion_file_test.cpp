@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/planning/planned_motion_file.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -35,6 +36,38 @@ TEST(PlannedMotionFile, IsReadAsItWasWritten) {
   EXPECT_EQ(read.support, planned.motion.support);
   // Twelve digits are written.
   EXPECT_LT((read.q - planned.motion.q).cwiseAbs().maxCoeff(), 1e-11);
+}
+
+// A wheel or finger that is on no chain and stands still is no business of the controller's.
+TEST(JointTrajectory, HasTheJointsOfChainsAndThoseThatMove) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const RobotTree& tree = project.tree;
+  JointMotion motion;
+  motion.time_s = Eigen::Vector3d(10.0, 10.5, 12.25);
+  motion.q = Eigen::MatrixXd::Zero(3, tree.coordinate_count());
+  const auto coordinate = [&](const std::string& joint) {
+    return tree.joints[static_cast<std::size_t>(FindJoint(tree, joint))].coordinate;
+  };
+  const int torso = coordinate("torso_2_joint"), head = coordinate("head_1_joint"),
+            leg = coordinate("leg_left_3_joint");
+  motion.q.col(leg) << 0.0, 0.25, 0.5;
+  Chain chain = project.chains.front();
+  chain.tip_link = FindLink(tree, "head_1_link");
+  const std::vector<int> coordinates = CommandedCoordinates(tree, {chain}, motion);
+  EXPECT_EQ(coordinates.size(), 4u);  // two of the torso, one of the head, one that moves
+  for (const int c : {torso, head, leg}) {
+    EXPECT_NE(std::ranges::find(coordinates, c), coordinates.end()) << c;
+  }
+  EXPECT_EQ(FormatJointTrajectory(tree, {leg}, motion, 2, RosVersion::kRos2),
+            "header:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: ''\njoint_names:\n"
+            "  - leg_left_3_joint\npoints:\n"
+            "  - positions: [0]\n    velocities: [0.5]\n"
+            "    time_from_start: {sec: 0, nanosec: 0}\n"
+            "  - positions: [0.5]\n    velocities: [0.142857]\n"
+            "    time_from_start: {sec: 2, nanosec: 250000000}\n");
+  EXPECT_NE(FormatJointTrajectory(tree, {leg}, motion, 2, RosVersion::kRos1)
+                .find("time_from_start: {secs: 2, nsecs: 250000000}"),
+            std::string::npos);
 }
 
 TEST(ProjectFile, ReadsSoles) {

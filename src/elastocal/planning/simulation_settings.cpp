@@ -50,6 +50,10 @@ void AddTruth(TruthOptions& truth, Settings& list) {
                 "Smallest joint stiffness of the legs, N.m/rad"},
                {e, "leg_stiffness_most", &truth.leg_stiffness_most, 1, 1, kStiffest,
                 "Largest joint stiffness of the legs, N.m/rad"},
+               {e, "slide_stiffness_least", &truth.slide_stiffness_least, 1, 1, kStiffest,
+                "Smallest stiffness of prismatic joints along their axes, N/m"},
+               {e, "slide_stiffness_most", &truth.slide_stiffness_most, 1, 1, kStiffest,
+                "Largest stiffness of prismatic joints along their axes, N/m"},
                {e, "upper_elasticity_scale", &truth.upper_elasticity_scale, 1, 0, 1000,
                 "Factor on compliances of head, arms and trunk; 0: rigid"},
                {e, "leg_elasticity_scale", &truth.leg_elasticity_scale, 1, 0, 1000,
@@ -318,6 +322,8 @@ void CheckRanges(const VirtualExperimentOptions& options) {
         truth.upper_stiffness_most);
   check("leg_stiffness_least", truth.leg_stiffness_least, "leg_stiffness_most",
         truth.leg_stiffness_most);
+  check("slide_stiffness_least", truth.slide_stiffness_least, "slide_stiffness_most",
+        truth.slide_stiffness_most);
   check("least_lag_s", sensors.least_lag_s, "largest_lag_s", sensors.largest_lag_s);
 }
 

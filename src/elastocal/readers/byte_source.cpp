@@ -82,6 +82,9 @@ std::string BagInside(const std::filesystem::path& folder) {
     const std::string ending = entry.path().extension().string();
     if (ending == ".mcap" || ending == ".db3") bags.push_back(entry.path().filename().string());
   }
+  if (bags.empty() && std::filesystem::exists(folder / "experiment.yaml", error)) {
+    return ": one of those that its experiment.yaml names (it is a recording folder)";
+  }
   if (bags.empty()) return "";
   const std::string one = ": the bag in it, " + *std::ranges::min_element(bags);
   return bags.size() == 1 ? one

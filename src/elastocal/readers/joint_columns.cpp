@@ -32,6 +32,18 @@ void AddOnce(const std::string& source, const std::string& joint, const char* wh
 
 }  // namespace
 
+std::string PlainColumnName(const std::string& name) {
+  if (!name.starts_with('/')) return name;
+  if (name.find("/header/") != std::string::npos) return "";
+  std::string path = name;
+  for (const char* quantity : {"position", "effort", "torque", "velocity"}) {
+    if (!TakeEnding(path, std::string("/") + quantity)) continue;
+    const std::string joint = path.substr(path.rfind('/') + 1);
+    return joint.empty() ? name : joint + "_" + quantity;
+  }
+  return name;
+}
+
 JointLog JoinColumns(const std::string& source, const std::vector<double>& time,
                      std::map<std::string, std::vector<double>>&& columns) {
   std::map<std::string, Column*> positions, torques;

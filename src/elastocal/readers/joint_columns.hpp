@@ -9,6 +9,11 @@
 
 namespace elastocal {
 
+/// The name of a column as a log of ours has it, of one that PlotJuggler and other programs export
+/// from a topic: JOINT_position of `/joint_states/JOINT/position`, likewise `effort`, `torque` and
+/// `velocity`. Other names stay. Empty: a topic's header, which holds nothing of a joint.
+std::string PlainColumnName(const std::string& name);
+
 /// Columns by name, as JOINT, JOINT_position, JOINT_torque, JOINT_effort and JOINT_velocity, made
 /// into a log: in the order of their names, velocities left out, NaN where a joint has no torque.
 /// All columns are as long as the time, and are used up. Throws InputError, whose message begins

@@ -89,8 +89,10 @@ TEST(NpzTest, TimeIsInTheUnitThatIsStated) {
   EXPECT_LT((read("t_ms", 1e-3) - t).norm(), 1e-12);
   EXPECT_LT((read("t", 1e-6, "us") - t).norm(), 1e-12);
   for (const double unit : {1e-9, 1e-6, 1e-3}) {
-    ExpectInputError([&] { read("t", unit); },
-                     {"log: most samples would be", "joints_time_unit", "--time-unit"});
+    ExpectInputError(
+        [&] { read("t", unit); },
+        {"log: most samples would be",
+         "joints_time_unit of the trial in experiment.yaml, with 'info'", "--time-unit"});
   }
   ExpectInputError([&] { read("t_ms", 1e-3, "us"); }, {"log: states", "'ms', not 'us'"});
   ExpectInputError([&] { read("t", 1.0, "min"); }, {"'min'", "s, ms, us or ns"});

@@ -20,6 +20,7 @@ double SecondsIn(std::string_view unit) {
 }
 
 std::optional<std::string> TimeUnitOfName(std::string_view name) {
+  if (name == "__time") return "";
   const std::size_t end = name.find('_');
   const std::string_view quantity = name.substr(0, end);
   if (quantity != "t" && quantity != "time") return std::nullopt;
@@ -57,8 +58,9 @@ void ToSeconds(std::string_view stated, const std::string& given, const std::str
   if (stated.empty() && given.empty()) {
     if (MayBeSamples(time)) return;
     throw InputError(source + ": most samples would be " + FormatNumber(MedianInterval(time)) +
-                     " s apart; say the unit of the time: joints_time_unit of the trial in "
-                     "experiment.yaml, or the option --time-unit (s, ms, us or ns)");
+                     " s apart; say the unit of the time (s, ms, us or ns): in a recording "
+                     "folder joints_time_unit of the trial in experiment.yaml, with 'info' and "
+                     "'convert' the option --time-unit");
   }
   const double seconds = SecondsIn(given.empty() ? stated : given);
   for (double& t : time) t *= seconds;

@@ -11,7 +11,8 @@ namespace elastocal {
 /// Seconds in a unit of time that files name: s, ms, us, ns; 0 for anything else.
 double SecondsIn(std::string_view unit);
 
-/// The unit in the name of a column or array of the time: "" of `t` and `time`, "ns" of `time_ns`.
+/// The unit in the name of a column or array of the time: "" of `t`, `time` and `__time`
+/// (PlotJuggler), "ns" of `time_ns`.
 /// Nothing for other names.
 std::optional<std::string> TimeUnitOfName(std::string_view name);
 

@@ -56,8 +56,13 @@ double DrawValue(const Parameter& parameter, bool leg_joint, const TruthOptions&
       return random.own().Normal(options.marker_sd);
     case ParameterKind::kTorsion:
     case ParameterKind::kBending: {
-      const double least = leg_joint ? options.leg_stiffness_least : options.upper_stiffness_least;
-      const double most = leg_joint ? options.leg_stiffness_most : options.upper_stiffness_most;
+      const bool slides = parameter.unit == ParameterUnit::kMetrePerNewton;
+      const double least = slides      ? options.slide_stiffness_least
+                           : leg_joint ? options.leg_stiffness_least
+                                       : options.upper_stiffness_least;
+      const double most = slides      ? options.slide_stiffness_most
+                          : leg_joint ? options.leg_stiffness_most
+                                      : options.upper_stiffness_most;
       return (leg_joint ? options.leg_elasticity_scale : options.upper_elasticity_scale) /
              (least * std::pow(most / least, random.Uniform(0.0, 1.0)));
     }

@@ -107,8 +107,7 @@ class Drawing {
     const Eigen::VectorXd torques = LargestGravityTorques(robot_.tree);
     for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
       const double share = random.Uniform(0.0, 1.0);
-      const double least = IsLeg(k) ? options_.leg_stiffness_least : options_.upper_stiffness_least;
-      const double most = IsLeg(k) ? options_.leg_stiffness_most : options_.upper_stiffness_most;
+      const auto [least, most] = StiffnessRange(k);
       const double scale =
           IsLeg(k) ? options_.leg_elasticity_scale : options_.upper_elasticity_scale;
       double compliance = 1.0 / (least * std::pow(most / least, share));
@@ -196,6 +195,15 @@ class Drawing {
   }
 
  private:
+  /// Smallest and largest stiffness of a joint.
+  std::pair<double, double> StiffnessRange(std::size_t k) const {
+    if (robot_.tree.joints[k].type == JointType::kPrismatic) {
+      return {options_.slide_stiffness_least, options_.slide_stiffness_most};
+    }
+    if (IsLeg(k)) return {options_.leg_stiffness_least, options_.leg_stiffness_most};
+    return {options_.upper_stiffness_least, options_.upper_stiffness_most};
+  }
+
   static Eigen::Index Index(std::size_t k) { return static_cast<Eigen::Index>(k); }
   bool IsLeg(std::size_t k) const { return InLeg(robot_.legs, static_cast<int>(k)); }
   double GeometryScale(std::size_t k) const {

@@ -40,9 +40,10 @@ struct TruthOptions {
   // Errors of linkages have the standard deviations of their priors, times the same factors.
 
   // Elasticity. Joint springs about the joints' axes: stiffness log-uniform between two values,
-  // N.m/rad (N/m for sliding joints).
+  // N.m/rad; along those of sliding joints, of legs or not, N/m: spindles, belts of steel, racks.
   double upper_stiffness_least = 0.3e5, upper_stiffness_most = 5e5;
   double leg_stiffness_least = 2e5, leg_stiffness_most = 6e5;
+  double slide_stiffness_least = 1e6, slide_stiffness_most = 1e7;
   double upper_elasticity_scale = 1.0;  ///< factor on the compliances; 0: rigid
   double leg_elasticity_scale = 2.0;    ///< factor on the compliances of the legs' joints and links
   /// Compliance of a leg's links, each half way between its joints, along and about the link's axes

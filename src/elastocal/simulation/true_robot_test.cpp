@@ -95,6 +95,26 @@ TEST(DrawTrueRobot, ErrorsHaveTheirSizes) {
   near(turns, std::sqrt(3.0) * options.angle_sd);
 }
 
+// A slide as soft as a turning joint's number says would sag by centimetres.
+TEST(DrawTrueRobot, SlidesHaveARangeOfTheirOwn) {
+  const TrueRobot turning = Nominal();
+  TrueRobot sliding = turning;
+  for (const std::size_t k : {1u, 4u}) sliding.tree.joints[k].type = JointType::kPrismatic;
+  TruthOptions options = Unscaled();
+  for (options.seed = 1; options.seed <= 20; ++options.seed) {
+    const Eigen::VectorXd others = DrawTrueRobot(turning, options).compliance;
+    const Eigen::VectorXd compliance = DrawTrueRobot(sliding, options).compliance;
+    for (Eigen::Index k = 0; k < compliance.size(); ++k) {
+      if (k != 1 && k != 4) {
+        EXPECT_EQ(compliance[k], others[k]) << k;
+        continue;
+      }
+      EXPECT_GE(1.0 / compliance[k], options.slide_stiffness_least);
+      EXPECT_LE(1.0 / compliance[k], options.slide_stiffness_most);
+    }
+  }
+}
+
 TEST(DrawTrueRobot, ScalesAndSwitchesOffWhatTheyName) {
   const TrueRobot nominal = Nominal();
   TruthOptions options = Unscaled();
