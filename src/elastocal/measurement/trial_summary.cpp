@@ -88,7 +88,6 @@ class Finder {
     }
   }
 
-<<<<<<< HEAD
   // Markers that are off in most frames, if they are of as many clusters.
   std::vector<int> OffThroughout(const std::vector<int>& frames) const {
     std::vector<int> markers;
@@ -102,7 +101,8 @@ class Finder {
       if (here > 1) return {};
     }
     return markers;
-=======
+  }
+
   // The labels of the file that no link names and that are nearly those of missing markers.
   std::string Misspelt() const {
     std::vector<std::string> pairs;
@@ -121,7 +121,6 @@ class Finder {
     if (pairs.empty()) return "";
     return "; is a label misspelt? The file has " + Join(pairs) +
            ", which no link of the project names";
->>>>>>> 23f7d1a3b0666da1093dd3e88c3f920e7b7de3f9
   }
 
   // Single outliers are normal for cameras; a marker that is off for long was touched.
