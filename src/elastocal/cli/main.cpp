@@ -213,8 +213,7 @@ std::string UsageErrorOf(std::vector<std::string> words) {
   try {
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
-    const std::string message = UsageMessage(&app, error);
-    return message.substr(0, message.find('\n'));
+    return UsageError(app, error);
   }
   return "";
 }

@@ -57,7 +57,9 @@ bool Is(const CLI::Error& error) {
   return dynamic_cast<const Kind*>(&error) != nullptr;
 }
 
-std::string OneLine(const CLI::App& app, const CLI::Error& error) {
+}  // namespace
+
+std::string UsageError(const CLI::App& app, const CLI::Error& error) {
   const std::string message = error.what();
   if (Is<CLI::ExtrasError>(error)) return UnknownWords(app);
   if (Is<CLI::RequiredError>(error)) {
@@ -76,11 +78,9 @@ std::string OneLine(const CLI::App& app, const CLI::Error& error) {
   return message == "A subcommand is required" ? "A command is required" : message;
 }
 
-}  // namespace
-
 std::string UsageMessage(const CLI::App* app, const CLI::Error& error) {
   const CLI::App& command = GivenCommand(*app);
-  return "elastocal: error: " + OneLine(*app, error) + "\n" +
+  return "elastocal: error: " + UsageError(*app, error) + "\n" +
          fmt::format("elastocal {}--help explains {}.\n",
                      &command == app ? "" : command.get_name() + " ",
                      &command == app ? "what there is" : "the options");
