@@ -126,19 +126,21 @@ class ShapeReader {
   std::vector<std::string> faults_;
 };
 
-/// The points of shapes that are not inside a primitive among them.
-std::vector<Eigen::Vector3d> OuterPoints(const std::vector<LinkShape>& shapes) {
+/// The points of shapes that are not inside a primitive among them, shape by shape.
+std::vector<std::vector<Eigen::Vector3d>> OuterPoints(const std::vector<LinkShape>& shapes) {
   constexpr double kDepth = 1e-6;
-  std::vector<Eigen::Vector3d> points;
+  std::vector<std::vector<Eigen::Vector3d>> parts;
   for (const LinkShape& shape : shapes) {
+    std::vector<Eigen::Vector3d> points;
     for (const Eigen::Vector3d& point : shape.points) {
       const bool hidden = std::any_of(shapes.begin(), shapes.end(), [&](const LinkShape& other) {
         return &other != &shape && other.primitive && other.primitive->Contains(point, kDepth);
       });
       if (!hidden) points.push_back(point);
     }
+    if (!points.empty()) parts.push_back(std::move(points));
   }
-  return points;
+  return parts;
 }
 
 struct BodyMass {
@@ -220,7 +222,10 @@ RobotShapes ReadBodyShapes(const RobotTree& tree, const std::string& text,
   for (std::string& warning : reader.Warnings()) result.warnings.push_back(std::move(warning));
   const double longest = LongestBranch(tree);
   for (int body = 0; body < tree.body_count(); ++body) {
-    BodyShape shape{BodyLink(tree, body), OuterPoints(shapes[Size(body)]), false};
+    BodyShape shape{BodyLink(tree, body), {}, false, OuterPoints(shapes[Size(body)])};
+    for (const std::vector<Eigen::Vector3d>& part : shape.parts) {
+      shape.points.insert(shape.points.end(), part.begin(), part.end());
+    }
     shape.guessed = shape.points.empty();
     if (shape.guessed) shape.points = GuessPoints(tree, body, longest);
     result.bodies.push_back(std::move(shape));

@@ -18,6 +18,8 @@ struct BodyShape {
   /// Whether the URDF has no shape that could be read, and the points are those of rods between the
   /// joints, as thick as the body's mass makes them.
   bool guessed = false;
+  /// The same points, shape by shape, where shapes were read.
+  std::vector<std::vector<Eigen::Vector3d>> parts = {};
 };
 
 struct RobotShapes {

@@ -275,6 +275,9 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
   RestOnFeet(draft, semantics);
   if (!draft.stands) draft.stance.reset();
   draft.spheres = CoverRobot(draft.tree, draft.shapes, draft.limbs, draft.rest.q);
+  for (std::string& coarse : CoarseCovers(draft.tree, draft.shapes, draft.spheres)) {
+    draft.warnings.push_back(std::move(coarse));
+  }
   constexpr double kMargin = 0.004;  // of the longest branch: 5 mm on a robot of 1.75 m
   draft.sphere_margin =
       kMetresPerMm * std::max(1.0, std::round(kMargin * LongestBranch(draft.tree) / kMetresPerMm));

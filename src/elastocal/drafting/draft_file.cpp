@@ -58,7 +58,7 @@ class DraftWriter {
     text_ +=
         "# Joints with a torque sensor are not in a URDF. List them here; without them, statics\n"
         "# give the torques.\n# torque_sensors: [" +
-        Word(tree_.joints[0].name) + "]\n\n";
+        Word(tree_.joints[Size(LimbJoint())].name) + "]\n\n";
     WriteSpheres();
     WriteDesign();
     WriteSoles();
@@ -66,6 +66,14 @@ class DraftWriter {
   }
 
  private:
+  /// A joint to name in an example: of an arm or a leg if there is one, no wheel's.
+  int LimbJoint() const {
+    for (const Limb& limb : draft_.limbs.limbs) {
+      if (limb.mirror >= 0 && !limb.joints.empty()) return limb.joints.back();
+    }
+    return draft_.limbs.limbs.empty() ? 0 : draft_.limbs.limbs.front().joints.back();
+  }
+
   const std::string& LinkName(int link) const { return tree_.links[Size(link)].name; }
 
   void WriteChains() {

@@ -132,6 +132,50 @@ std::vector<std::string> LimbsOfPole(const std::string& more) {
   return names;
 }
 
+/// A ball around a thin mast on a wide chassis would keep the arms away from everything.
+TEST(Draft, AMastOnAChassisIsCoveredShapeByShape) {
+  const std::string mast =
+      "<collision><origin xyz='-0.2 0 0.6'/><geometry><box size='0.12 0.2 1'/></geometry>"
+      "</collision>";
+  std::string urdf = PoleUrdf("<box size='0.7 0.5 0.25'/>", "60");
+  urdf.insert(urdf.find("</link>"), mast);
+  const ProjectDraft draft = DraftProject(urdf, "pole.urdf", {});
+  std::size_t count = 0;
+  for (const CollisionSphere& sphere : draft.spheres) {
+    if (sphere.link != 0) continue;
+    ++count;
+    EXPECT_LT(sphere.radius, 0.25);  // one cover of both has 0.387
+  }
+  EXPECT_LE(count, 12U);
+  EXPECT_EQ(draft.warnings.end(), std::ranges::find_if(draft.warnings, [](const std::string& text) {
+              return text.find("coarse") != std::string::npos;
+            }));
+  for (const Eigen::Vector3d& p : draft.shapes.bodies[0].points) {
+    double outside = std::numeric_limits<double>::infinity();
+    for (const CollisionSphere& sphere : draft.spheres) {
+      if (sphere.link != 0) continue;
+      outside = std::min(outside, (p - sphere.p_link_centre).norm() - sphere.radius);
+    }
+    EXPECT_LT(outside, 0.015);
+  }
+}
+
+/// A joint whose limit is at zero rests so far from it that `--limit-margin-deg 6` finds room.
+TEST(Draft, TheRestOfAnElbowKeepsAwayFromItsLimit) {
+  std::string urdf = PoleUrdf("<box size='0.3 0.3 0.3'/>", "20");
+  for (const char* joint : {"l2_joint", "r2_joint"}) {
+    const std::size_t at = urdf.find("lower='-1' upper='1'", urdf.find(joint));
+    urdf.replace(at, 20, "lower='-2' upper='0'");
+  }
+  const ProjectDraft draft = DraftProject(urdf, "pole.urdf", {});
+  const auto rest = [&](const char* joint) {
+    return draft.rest.q[draft.tree.joints[Size(FindJoint(draft.tree, joint))].coordinate];
+  };
+  // 2.1 % of the range and 10 degrees; a joint whose zero is far from its limits stays there.
+  EXPECT_NEAR(rest("l2_joint"), -(0.042 + 10.0 * kRadiansPerDegree), 1e-3);
+  EXPECT_EQ(rest("l1_joint"), 0.0);
+}
+
 /// The URDF of TALOS with its boxes as meshes of twelve triangles in `folder`.
 std::string TalosOfMeshes(const ScratchFolder& folder) {
   const std::regex box("<box size=\"([^ ]*) ([^ ]*) ([^\"]*)\"/>");

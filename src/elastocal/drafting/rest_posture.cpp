@@ -259,6 +259,22 @@ std::string OutsideLimits(const std::string& state, const Joint& joint, double v
       joint.limits.upper / unit);
 }
 
+/// The zero posture within limits. A joint whose limit is at zero, as that of many elbows is, is
+/// bent by 10 degrees more, at most by an eighth of its range: a straight arm is singular, and
+/// commands that are corrected later need room.
+Eigen::VectorXd AwayFromLimits(const RobotTree& tree, const Eigen::VectorXd& lower,
+                               const Eigen::VectorXd& upper) {
+  constexpr double kRoom = 10.0 * kRadiansPerDegree, kMostShare = 0.125;
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(lower.size());
+  Eigen::VectorXd room = zero;
+  for (Eigen::Index c = 0; c < room.size(); ++c) {
+    const Joint& joint = tree.joints[Size(tree.coordinate_joint[static_cast<std::size_t>(c)])];
+    if (joint.type != JointType::kRevolute) continue;
+    room[c] = std::clamp(kMostShare * (upper[c] - lower[c]), 0.0, kRoom);
+  }
+  return zero.cwiseMax(lower + room).cwiseMin(upper - room);
+}
+
 }  // namespace
 
 RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
@@ -267,7 +283,9 @@ RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
   constexpr double kMargin = 0.021;
   const auto [lower, upper] = RangesOf(tree, kMargin);
   RestPosture rest;
-  rest.q = Eigen::VectorXd::Zero(tree.coordinate_count()).cwiseMax(lower).cwiseMin(upper);
+  // On legs, knees are bent and hands are held ahead later.
+  rest.q = soles.empty() ? AwayFromLimits(tree, lower, upper)
+                         : Eigen::VectorXd::Zero(lower.size()).cwiseMax(lower).cwiseMin(upper);
   rest.source = "the zero posture, within the limits";
   if (const auto* state = UsualState(semantics)) {
     Eigen::VectorXd q = rest.q;

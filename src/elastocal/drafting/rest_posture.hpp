@@ -21,7 +21,8 @@ struct RestPosture {
 inline constexpr double kUsualDrop = 0.06;  // of the legs' length
 
 /// Chooses a posture of rest: a state of the SRDF (half sitting, standing, home, ...) if the robot
-/// stands flat in it, otherwise the zero posture moved into the limits, with the knees of the legs
+/// stands flat in it, otherwise the zero posture moved into the limits (without legs by 10
+/// degrees more, or an eighth of the range), with the knees of the legs
 /// bent: the root link is lowered by as much as the legs allow, up to the share `drop` of their
 /// length. A share above the usual one bends the legs of a state of the SRDF too. `tree` has the
 /// links of all soles.

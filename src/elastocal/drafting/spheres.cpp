@@ -170,11 +170,14 @@ bool NearBox(const ChainSetup& chain, const Eigen::Vector3d& tip) {
 
 }  // namespace
 
+double FittingRadius(const Points3& points, double tolerance) {
+  // A rod is covered by balls of its thickness, a plate by balls as wide as its shorter side.
+  return 1.15 * HalfExtents(points)[1] + 2.0 * tolerance;
+}
+
 std::vector<CollisionSphere> CoverPoints(const Points3& points, double tolerance, int most) {
   if (points.empty()) return {};
-  const Eigen::Vector3d half = HalfExtents(points);
-  // A rod is covered by balls of its thickness, a plate by balls as wide as its shorter side.
-  const double enough = 1.15 * half[1] + 2.0 * tolerance;
+  const double enough = FittingRadius(points, tolerance);
   std::vector<CollisionSphere> best;
   for (int count = 1; count <= most; ++count) {
     best = Balls(points, count);

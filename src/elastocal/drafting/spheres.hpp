@@ -15,12 +15,21 @@ namespace elastocal {
 std::vector<CollisionSphere> CoverPoints(const std::vector<Eigen::Vector3d>& points,
                                          double tolerance, int most);
 
+/// The radius from which on CoverPoints needs no more spheres: about half of the thickness of a
+/// rod, or of the shorter side of a plate.
+double FittingRadius(const std::vector<Eigen::Vector3d>& points, double tolerance);
+
 /// Spheres that cover all bodies of the robot, in the frames of the bodies' links, rounded to mm.
 /// Names are unique. What is symmetric to the root link's x-z plane in the zero posture gets
 /// spheres that are. Fingers, as they are at rest, are
-/// covered together with the hand.
+/// covered together with the hand. A body of several shapes is covered shape by shape where one
+/// cover of all would be much thicker than they are.
 std::vector<CollisionSphere> CoverRobot(const RobotTree& tree, const RobotShapes& shapes,
                                         const Limbs& limbs, const Eigen::VectorXd& rest);
+
+/// A sentence for each body whose spheres are more than twice as thick as would fit its shapes.
+std::vector<std::string> CoarseCovers(const RobotTree& tree, const RobotShapes& shapes,
+                                      const std::vector<CollisionSphere>& spheres);
 
 /// Pairs of spheres whose distance changes with the joints `coordinates` and that do not lie
 /// against each other by design: not on neighbouring bodies nor on two sections of a telescope
