@@ -35,7 +35,7 @@ function frameFact(frames) {
   if (!frames?.length) return null;
   const worst = frames.reduce((a, b) => b.position_sd_mm > a.position_sd_mm ? b : a);
   return fact(significant(worst.position_sd_mm, 2), 'mm',
-    `error to be expected (sd) of the URDF between the root link and ${worst.link}, which fitted markers do not show`);
+    `expected error (sd) of ${worst.link} against the root link, unseen by fitted markers`);
 }
 
 const FIT = /themselves/;
