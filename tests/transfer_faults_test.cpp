@@ -22,7 +22,11 @@ constexpr double kTurnDegree = M_PI / 180.0;
 class TransferFaults : public testing::Test {
  protected:
   Recording Trial(const std::string& name, std::uint64_t seed) const {
-    Recording recording = MakeSyntheticRecording(model_, truth_, {.postures = 24, .seed = seed});
+    return TrialOf(model_, name, seed);
+  }
+
+  Recording TrialOf(const ErrorModel& model, const std::string& name, std::uint64_t seed) const {
+    Recording recording = MakeSyntheticRecording(model, truth_, {.postures = 24, .seed = seed});
     recording.trials = {{name, TrialKind::kRandom, {project_.chains.front().name}}};
     recording.trial.assign(24, 0);
     return recording;
@@ -107,6 +111,23 @@ TEST_F(TransferFaults, AGainInOneTrialIsNamed) {
       project_.tree.joints[FindJoint(project_.tree, "shoulder_joint")].coordinate;
   recorded_.q.col(coordinate).head(24) *= 1.03;
   ExpectFound({"shoulder_joint: its positions are 1.0300", "in trial morning"});
+}
+
+TEST_F(TransferFaults, AClusterThatIsElsewhereInOneTrialIsNamed) {
+  ErrorModel moved = model_;
+  for (Marker& marker : moved.markers) {
+    if (marker.name.starts_with("FOREARM")) marker.p_link_marker.y() += 9e-3;
+  }
+  recorded_ = JoinTrials(Trial("morning", 1), TrialOf(moved, "evening", 2));
+  ExpectFound({"FOREARM", "9.0 mm", "evening"});
+}
+
+// A table has no trials.
+TEST_F(TransferFaults, AJointThatIsOffInATableMayHaveMoved) {
+  recorded_.trials.clear();
+  recorded_.trial.clear();
+  Turn("elbow_joint", 2.0, 0, 48);
+  ExpectFound({"elbow_joint: its positions are off by 1.99", "may as well have moved"});
 }
 
 }  // namespace

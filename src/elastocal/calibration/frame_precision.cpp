@@ -29,6 +29,18 @@ std::vector<int> SomePostures(const Recording& recording) {
   return postures;
 }
 
+/// The links that no joint without errors of its own moves.
+std::vector<int> MovedByKnownJoints(const ErrorModel& model, std::vector<int> links) {
+  std::erase_if(links, [&](int link) {
+    const std::vector<int> joints =
+        JointsToBody(model.tree, model.tree.links[static_cast<std::size_t>(link)].body);
+    return !std::ranges::all_of(joints, [&](int joint) {
+      return std::ranges::find(model.active_joints, joint) != model.active_joints.end();
+    });
+  });
+  return links;
+}
+
 bool PlacesLinks(const Parameter& parameter) {
   return !IsExternal(parameter.kind) && !IsCompliance(parameter.kind);
 }
@@ -36,9 +48,9 @@ bool PlacesLinks(const Parameter& parameter) {
 }  // namespace
 
 std::vector<FramePrecision> AssessFrames(const CalibrationResult& result,
-                                         const Recording& recording,
-                                         const std::vector<int>& links) {
+                                         const Recording& recording, const std::vector<int>& ends) {
   const ErrorModel& model = result.model;
+  const std::vector<int> links = MovedByKnownJoints(model, ends);
   const std::vector<int>& parameters = result.posterior.parameters;
   const std::vector<int> postures = SomePostures(recording);
   const auto row = [&](std::size_t posture, std::size_t link) {

@@ -17,9 +17,11 @@ struct FramePrecision {
   double attitude_sd = 0.0;  ///< of the angle, rad
 };
 
-/// One entry a link, in their order. From the covariance of all estimates, to first order.
-/// Corrections beside geometry and springs (eccentricity, gear ...) are left out.
+/// One entry a link, in their order, but for links behind a joint that moves no seen marker: of
+/// these the recording says nothing. From the covariance of all estimates, to first order;
+/// parameters that are held are taken as right, and corrections beside geometry and springs
+/// (eccentricity, gear ...) are left out.
 std::vector<FramePrecision> AssessFrames(const CalibrationResult& result,
-                                         const Recording& recording, const std::vector<int>& links);
+                                         const Recording& recording, const std::vector<int>& ends);
 
 }  // namespace elastocal

@@ -26,13 +26,14 @@ bool CoversLittle(const TrialSummary& summary) {
          kLittleOfTrial * summary.frame_count;
 }
 
-/// With the log of another trial, if it is far better than with its own, or far longer.
+/// With the log of another trial, if it is far better than with its own, or as good and far longer.
 bool FitsBetter(const SampleWithLog& sample, const TrialSummary& own, std::size_t markers_of,
                 std::size_t log_of) {
   try {
     const TrialSamples other = sample(markers_of, log_of);
     if (!other.summary.refused.empty()) return false;
-    const bool longer = own.refused.empty() && CoversLittle(own) && !CoversLittle(other.summary);
+    const bool longer = own.refused.empty() && CoversLittle(own) && !CoversLittle(other.summary) &&
+                        other.summary.clock.peak >= own.clock.peak;
     return longer || 1.0 - other.summary.clock.peak < kLackWithRight * (1.0 - own.clock.peak);
   } catch (const InputError&) {
     return false;

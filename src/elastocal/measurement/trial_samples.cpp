@@ -267,13 +267,13 @@ class TrialSampler {
   }
 
   std::string CauseOfBadClock(const Motion& seen) const {
-    const std::string copies = DescribeCopies(smoothed_log_, log_.names);
-    if (!copies.empty()) return "; " + copies;
     const auto mistake =
         FindLogMistake(robot_, markers_, seen.links, smoothed_log_, coordinates_, seen.speeds,
                        seen.relative ? *seen.relative : trajectories_, options_.expected_lag_s,
                        ClockSettings(), result_.summary.clock.peak);
     if (mistake) return "; " + Describe(*mistake, log_.names);
+    const std::string copies = DescribeCopies(smoothed_log_, log_.names);
+    if (!copies.empty()) return "; " + copies;
     const double rate_hz = trajectories_.rate_hz;
     const auto means = TakeMeanSpeeds(
         seen.speeds, rate_hz,

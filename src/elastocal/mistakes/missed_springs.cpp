@@ -23,12 +23,17 @@ bool HoldsSomethingRigid(const ElasticityChoice& choice) {
          std::find(choice.torsion->begin(), choice.torsion->end(), "*") == choice.torsion->end();
 }
 
+bool HasSprings(const ElasticityChoice& choice) {
+  return choice.base || !choice.torsion || !choice.torsion->empty();
+}
+
 }  // namespace
 
 std::string FindMissedSprings(const Project& project, std::optional<std::uint64_t> seed,
                               const Measurements& as_recorded, double left, double left_otherwise) {
+  // With a prior, it is the earlier calibration that decided on springs.
   if (as_recorded.calibration.trials.empty() || !HoldsSomethingRigid(project.elasticity) ||
-      !HasMasses(project.tree)) {
+      !HasMasses(project.tree) || !project.calibration.earlier.empty()) {
     return "";
   }
   Project elastic = project;
@@ -42,10 +47,10 @@ std::string FindMissedSprings(const Project& project, std::optional<std::uint64_
     const double by_springs = FitError(fit, measured.calibration, elastic.calibration);
     if (!(by_springs < kLeftBySprings * left && by_springs < left_otherwise)) return "";
     return fmt::format(
-        "the robot gives way under its weight, and the project holds it rigid: with elastic joints "
+        "the robot gives way under its weight, and the project holds {} rigid: with elastic joints "
         "and legs the error of the fit falls from {:.3g} to {:.3g} mm. Take `elasticity` out of "
         "the project",
-        1e3 * left, 1e3 * by_springs);
+        HasSprings(project.elasticity) ? "a part of it" : "it", 1e3 * left, 1e3 * by_springs);
   } catch (const InputError&) {
     return "";
   }

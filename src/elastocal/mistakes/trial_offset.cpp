@@ -121,9 +121,10 @@ std::vector<RecordingFault> OffsetsBesideErrors(const CalibrationResult& result,
   return measured;
 }
 
-/// rms distance of the markers of held-out trials, waist and markers being fitted to them, m.
-double ErrorOnHeldOut(const CalibrationResult& result, const BaseParameters& base,
-                      const Recording& held_out, const CalibrationOptions& options) {
+/// rms distance of the markers of held-out trials, waist and markers being fitted to them, m; none
+/// where there are too few for that.
+std::optional<double> ErrorOnHeldOut(const CalibrationResult& result, const BaseParameters& base,
+                                     const Recording& held_out, const CalibrationOptions& options) {
   Recording few = WithThinnedMotions(held_out, kMostOfMotions);
   AddUnseenMarkers(result.model, few);
   std::map<std::string, double> errors;
@@ -131,7 +132,11 @@ double ErrorOnHeldOut(const CalibrationResult& result, const BaseParameters& bas
     const Parameter& parameter = result.model.parameters[Size(i)];
     if (!IsExternal(parameter.kind)) errors[parameter.name] = result.delta[i];
   }
-  return RefitTo(result.model, few, base, options, errors).metrics_all.rmse_3d;
+  try {
+    return RefitTo(result.model, few, base, options, errors).metrics_all.rmse_3d;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -165,7 +170,8 @@ std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
       if (!(left < least)) continue;
       if (held_out.posture_count() > 0) {
         if (!predicted) predicted = ErrorOnHeldOut(result, base, held_out, options);
-        if (ErrorOnHeldOut(fit, base, held_out, options) > kWorse * *predicted) continue;
+        const auto without_it = ErrorOnHeldOut(fit, base, held_out, options);
+        if (predicted && without_it && *without_it > kWorse * *predicted) continue;
       }
       least = left;
       found = candidates[k];

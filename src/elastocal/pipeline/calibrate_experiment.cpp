@@ -209,7 +209,7 @@ void CrossValidateRun(int folds, Work& work) {
                                                     .seed = options.seed.value_or(1),
                                                     .threads = options.threads},
                                                    OfStep(options.progress, "cross-validation"));
-    run.decided_once = DecidedOnce(data);
+    run.decided_once = DecidedOnce(data, folds);
   } catch (const InputError& error) {  // a fold has fewer equations than unknowns
     if (options.folds) throw;
     run.warnings.push_back(std::string("not cross-validated: ") + error.what());

@@ -78,9 +78,11 @@ std::string Listed(const std::vector<std::string>& names) {
   return text;
 }
 
-bool MayChoose(int postures) { return postures >= kFewestPostures && postures <= kLargestTable; }
-
 }  // namespace
+
+bool MayChooseCauses(int postures) {
+  return postures >= kFewestPostures && postures <= kLargestTable;
+}
 
 CauseReport StudyObservedCauses(const Project& project, const ObservedRobot& model,
                                 const Observations& observations, const ObservationFit& fit,
@@ -138,7 +140,7 @@ std::optional<CauseReport> ChooseCauses(const Measurements& measured,
     project.elasticity.extra = CausesMatching(PossibleCauses(project, recording), asked.names);
     return std::nullopt;
   }
-  if (!recording.trials.empty() || !MayChoose(recording.posture_count())) return std::nullopt;
+  if (!recording.trials.empty() || !MayChooseCauses(recording.posture_count())) return std::nullopt;
   CauseReport report;
   try {
     report = StudyCauses(project, measured, seed);
@@ -166,7 +168,7 @@ ObservedCauses ChooseObservedCauses(const Project& project, const ObservedRobot&
     causes.extra = CausesMatching(CausesOf(possible), asked.names);
     return causes;
   }
-  if (!MayChoose(observations.posture_count())) return causes;
+  if (!MayChooseCauses(observations.posture_count())) return causes;
   causes.report = StudyObservedCauses(project, model, observations, fit, std::nullopt);
   const auto calibrate_with = [&](const std::vector<std::string>& extra) {
     const ObservedRobot with =

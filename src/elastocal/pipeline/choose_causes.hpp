@@ -40,6 +40,9 @@ CauseReport StudyObservedCauses(const Project& project, const ObservedRobot& mod
                                 const Observations& observations, const ObservationFit& fit,
                                 std::optional<std::uint64_t> seed);
 
+/// Whether a table of so many postures may choose causes without being asked: 15 to 300.
+bool MayChooseCauses(int postures);
+
 /// Sets the extra causes of the project's models as `calibration.extra` says: those named, none,
 /// or those that the held-out error of a table of 15 to 300 postures asks for and that a
 /// calibration with all of them does not find within their uncertainty; then what was found on the

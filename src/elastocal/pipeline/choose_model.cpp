@@ -50,14 +50,14 @@ bool MissesSprings(const Measurements& measured, std::optional<std::uint64_t> se
 }  // namespace
 
 ModelChoice ChooseModel(const Measurements& measured, std::optional<std::uint64_t> seed, int folds,
-                        int threads, Project& project) {
+                        int threads, Project& project, AskForSprings ask) {
   const ElasticityChoice open = project.elasticity;
   ModelChoice choice;
   // Section 2.2: whether the joints of a table of postures are taken as elastic, the data say.
   choice.elasticity = ChooseElasticity(measured.calibration, seed, folds, threads, project);
   // Not in the paper: what neither geometry nor springs explain, where the data ask for it.
   choice.causes = ChooseCauses(measured, seed, project);
-  if (choice.causes) {
+  if (choice.causes && ask == AskForSprings::kYes) {
     choice.misses_springs = MissesSprings(measured, seed, folds, threads, project);
   }
 

@@ -20,11 +20,14 @@ struct ModelChoice {
   bool misses_springs = false;
 };
 
+/// Whether `misses_springs` is found out, which takes several estimates.
+enum class AskForSprings { kYes, kNo };
+
 /// Decides on elastic joints, then on causes beyond geometry and springs, where the project leaves
 /// them open, and sets both in the project. A large cause hides springs, and a spring that is
 /// missing looks like further causes: where causes were found, elastic joints are decided on once
 /// more with them and, if that changes, causes once more with the springs.
 ModelChoice ChooseModel(const Measurements& measured, std::optional<std::uint64_t> seed, int folds,
-                        int threads, Project& project);
+                        int threads, Project& project, AskForSprings ask = AskForSprings::kYes);
 
 }  // namespace elastocal

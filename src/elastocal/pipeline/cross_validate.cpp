@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/choose_model.hpp"
 #include "elastocal/recorded/choose_elasticity.hpp"
 
@@ -22,9 +23,9 @@ constexpr int kInnerFolds = 5;
 /// postures choose.
 Project ProjectOfFold(const ExperimentData& data, const Measurements& training) {
   Project project = data.project;
-  if (data.chose_causes) {
+  if (data.chose_causes && MayChooseCauses(training.calibration.posture_count())) {
     if (data.open_elasticity) project.elasticity = *data.open_elasticity;
-    ChooseModel(training, data.seed, kInnerFolds, 1, project);
+    ChooseModel(training, data.seed, kInnerFolds, 1, project, AskForSprings::kNo);
     return project;
   }
   if (!ChoosesElasticity(data)) return project;
@@ -83,9 +84,13 @@ CrossValidation CrossValidateExperiment(const ExperimentData& data, const Record
   return validation;
 }
 
-std::vector<std::string> DecidedOnce(const ExperimentData& data) {
-  if (data.open_elasticity && !ChoosesElasticity(data)) return {"elasticity"};
-  return {};
+std::vector<std::string> DecidedOnce(const ExperimentData& data, int folds) {
+  const int postures = data.as_recorded.posture_count();
+  const int smallest_training = postures - (postures + folds - 1) / folds;
+  std::vector<std::string> decided;
+  if (data.chose_causes && !MayChooseCauses(smallest_training)) decided.emplace_back("causes");
+  if (data.open_elasticity && !ChoosesElasticity(data)) decided.emplace_back("elasticity");
+  return decided;
 }
 
 }  // namespace elastocal

@@ -32,7 +32,8 @@ CrossValidation CrossValidateExperiment(const ExperimentData& data, const Record
 
 inline constexpr int kMostNested = 300;
 
-/// What the folds do not decide anew but take as all postures together decided it: "elasticity".
-std::vector<std::string> DecidedOnce(const ExperimentData& data);
+/// What the folds do not decide anew but take as all postures together decided it: "elasticity" in
+/// large tables, "causes" where a fold has too few postures to choose any.
+std::vector<std::string> DecidedOnce(const ExperimentData& data, int folds);
 
 }  // namespace elastocal

@@ -134,8 +134,12 @@ void NameFaults(const Project& project, std::optional<std::uint64_t> seed,
   std::optional<TransferValidation> refitted;
   if (run.frozen) {
     if (!(ErrorOf(run.transfer) > kWorseThanPredicted * expected)) return;
-    refitted = ValidateTransfer(robot.model, measured.calibration, robot.base, project.calibration,
-                                run.calibration.joint_errors);
+    try {
+      refitted = ValidateTransfer(robot.model, measured.calibration, robot.base,
+                                  project.calibration, run.calibration.joint_errors);
+    } catch (const InputError&) {
+      return;  // too few postures to fit waist and markers by
+    }
   }
   const auto holds = [&](Measurements corrected) {
     const RecordedModel plain = MakeRecordedModel(project, seed, corrected, KnockSearch::kNone);
@@ -151,10 +155,14 @@ void NameFaults(const Project& project, std::optional<std::uint64_t> seed,
                                      .holds = holds});
 }
 
-/// Trials that cannot be used, which nothing is judged by: no longer warnings, as these say them.
+/// Trials of the kind that is judged which cannot be used: no longer warnings, as these say them.
 void NameUnused(const std::vector<TrialSummary>& trials, ValidationRun& run) {
+  const bool by_calibration = std::ranges::any_of(run.recording.trials, [](const Trial& trial) {
+    return trial.kind == TrialKind::kCalibration;
+  });
   for (const TrialSummary& trial : trials) {
-    if (trial.refused.empty()) continue;
+    const bool judged = (trial.trial.kind == TrialKind::kCalibration) == by_calibration;
+    if (trial.refused.empty() || !judged) continue;
     std::erase(run.warnings, "trial " + trial.trial.name + ": not used: " + trial.refused);
     run.not_judged.push_back(fmt::format(
         "trial {} is not judged ({}): record it again or, to judge the others, take it out of "
