@@ -392,13 +392,6 @@ void CheckParameters(const StoredCalibration& stored, const ErrorModel& model,
     if (IsExternal(parameter.kind) || IsElastic(parameter.kind)) continue;
     const std::string owner = OwnerOf(parameter.name);
     if (!calibrated.contains(owner) || stored.joint_errors.contains(parameter.name)) continue;
-    if (parameter.kind == ParameterKind::kGamma && stored.joint_errors.contains(owner + ".beta")) {
-      throw InputError(
-          stored.source + ": joint " + Quote(owner) +
-          " has `beta`, where gamma and b were expected: an earlier version, which "
-          "placed a joint behind a sliding one otherwise, made the file; calibrate the "
-          "robot anew");
-    }
     throw InputError(stored.source + ": no parameter " + Quote(parameter.name) +
                      ", although the file has others of this joint: it was cut or changed");
   }
