@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -196,20 +197,33 @@ class TransferSearch {
         fmt::join(joints, ", "));
   }
 
+  /// In which trials a cluster is off, the worst first. If it is in all that show it, the worst
+  /// one: the refit has its markers in between.
+  std::vector<ClusterError> SuspectedTrials(std::size_t cluster) const {
+    std::vector<ClusterError> trials;
+    for (const ClusterError& one : errors_) {
+      if (one.cluster == cluster && one.ratio > 0.0) trials.push_back(one);
+    }
+    std::ranges::stable_sort(trials, std::greater(), &ClusterError::ratio);
+    const auto calm = std::ranges::find_if(
+        trials, [](const ClusterError& one) { return !(one.ratio > kSuspicious); });
+    const bool all = calm == trials.end() && trials.size() > 1;
+    trials.erase(all ? trials.begin() + 1 : calm, trials.end());
+    return trials;
+  }
+
   std::vector<std::string> OfClusters() const {
+    if (of_.recording.trials.empty()) return {};
     std::vector<std::pair<double, MovedSuspect>> suspects;
     for (std::size_t k = 0; k < clusters_.size(); ++k) {
-      double worst = 0.0;
+      const std::vector<ClusterError> trials = SuspectedTrials(k);
+      if (trials.empty()) continue;
       MovedSuspect suspect{clusters_[k], std::vector<char>(Size(of_.recording.posture_count()), 0)};
-      for (const ClusterError& one : errors_) {
-        if (one.cluster != k || !(one.ratio > kSuspicious) || of_.recording.trials.empty())
-          continue;
-        worst = std::max(worst, one.ratio);
-        for (int i = 0; i < of_.recording.posture_count(); ++i) {
-          if (of_.recording.trial[i] == one.trial) suspect.there[Size(i)] = 1;
-        }
+      for (int i = 0; i < of_.recording.posture_count(); ++i) {
+        suspect.there[Size(i)] = std::ranges::any_of(
+            trials, [&](const ClusterError& one) { return one.trial == of_.recording.trial[i]; });
       }
-      if (worst > 0.0) suspects.emplace_back(worst, std::move(suspect));
+      suspects.emplace_back(trials.front().ratio, std::move(suspect));
     }
     std::stable_sort(suspects.begin(), suspects.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
