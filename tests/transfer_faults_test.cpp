@@ -119,7 +119,7 @@ TEST_F(TransferFaults, AClusterThatIsElsewhereInOneTrialIsNamed) {
     if (marker.name.starts_with("FOREARM")) marker.p_link_marker.y() += 9e-3;
   }
   recorded_ = JoinTrials(Trial("morning", 1), TrialOf(moved, "evening", 2));
-  ExpectFound({"FOREARM", "9.0 mm", "evening"});
+  ExpectFound({"cluster FOREARM", "in trial morning than in the others", "by 8.97 mm"});
 }
 
 // A table has no trials.
