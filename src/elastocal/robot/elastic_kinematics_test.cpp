@@ -212,14 +212,16 @@ void ExpectDerivatives(const ElasticRobot& robot, LoadsOfRootJoints root_joints)
   const Eigen::MatrixXd J = jacobian.Dense();
   for (int i = 0; i < model.parameter_count(); ++i) {
     const bool compliance = IsCompliance(model.parameters[i].kind);
-    // A step of 2e-7 rad/(N.m) turns a joint by some 2e-5 rad: the step's square leaves 1e-10 of
-    // the derivative, rounding 1e-15 / 2e-5 as much.
+    // A step of 2e-7 rad/(N.m) turns a joint by some 2e-5 rad. Differences of fourth order: what
+    // its square leaves differs from robot to robot.
     const double step = compliance ? 2e-7 : 1e-5;
-    Eigen::VectorXd forward = robot.delta, backward = robot.delta;
-    forward[i] += step;
-    backward[i] -= step;
+    const auto at = [&](double steps) {
+      Eigen::VectorXd beside = robot.delta;
+      beside[i] += steps * step;
+      return Points(robot, beside, root_joints);
+    };
     const Eigen::VectorXd slope =
-        (Points(robot, forward, root_joints) - Points(robot, backward, root_joints)) / (2.0 * step);
+        (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * step);
     const double size = compliance ? robot.loads.lpNorm<Eigen::Infinity>() : 1.0;
     const Eigen::Index rows = 3 * model.marker_count();
     EXPECT_LT((J.col(i) - slope.head(rows)).norm(), 3e-9 * size) << model.parameters[i].name;
