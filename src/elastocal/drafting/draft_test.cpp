@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <regex>
 
 #include <gtest/gtest.h>
 
@@ -26,20 +24,6 @@ namespace {
 double Length(const Project& project, int marker, int other) {
   return (project.markers[Size(marker)].p_link_marker - project.markers[Size(other)].p_link_marker)
       .norm();
-}
-
-/// No point of the shapes is further than 15 mm out of the spheres of its link.
-void ExpectCovered(const ProjectDraft& shapes, const std::vector<CollisionSphere>& spheres) {
-  for (const BodyShape& body : shapes.shapes.bodies) {
-    for (const Eigen::Vector3d& p : body.points) {
-      double outside = std::numeric_limits<double>::infinity();
-      for (const CollisionSphere& sphere : spheres) {
-        if (sphere.link != body.link) continue;
-        outside = std::min(outside, (p - sphere.p_link_centre).norm() - sphere.radius);
-      }
-      EXPECT_LT(outside, 0.015) << shapes.tree.links[Size(body.link)].name;
-    }
-  }
 }
 
 TEST(DraftStudy, TalosHasTheLimbsOfItsHandWrittenProject) {
@@ -91,37 +75,6 @@ TEST(DraftStudy, ClustersAreFatTrianglesOfDifferentSides) {
   }
 }
 
-TEST(Draft, SpheresCoverTheShapesOfTalosWithin15Millimetres) {
-  const ProjectDraft& draft = DraftFile("models/talos/talos.urdf");
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(draft.tree.coordinate_count());
-  const auto poses = LinkTransforms(draft.tree, zero);
-  ExpectCovered(draft, draft.spheres);
-  EXPECT_LT(draft.spheres.size(), 70U);
-}
-
-/// A link of 1 kg and the joint about y that carries it.
-std::string RodXml(const std::string& name, const std::string& parent, const std::string& place,
-                   const std::string& type = "revolute") {
-  return "<link name='" + name +
-         "'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' "
-         "ixz='0' iyz='0'/></inertial></link><joint name='" +
-         name + "_joint' type='" + type + "'><parent link='" + parent + "'/><child link='" + name +
-         "'/><origin xyz='" + place + "'/><axis xyz='0 1 0'/>" +
-         (type == "revolute" ? "<limit lower='-1' upper='1' velocity='1' effort='100'/>" : "") +
-         "</joint>";
-}
-
-/// A pole with two arms of two rods each; `shape` is the geometry of the root.
-std::string PoleUrdf(const std::string& shape, const std::string& mass,
-                     const std::string& more = "") {
-  return "<robot name='pole'><link name='pole'><inertial><mass value='" + mass +
-         "'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial><collision>"
-         "<geometry>" +
-         shape + "</geometry></collision></link>" + RodXml("l1", "pole", "0.2 0.2 0.3") +
-         RodXml("l2", "l1", "0.2 0 0.3") + RodXml("r1", "pole", "0.2 -0.2 0.3") +
-         RodXml("r2", "r1", "0.2 0 0.3") + more + "</robot>";
-}
-
 /// Names of the limbs of the pole with more links.
 std::vector<std::string> LimbsOfPole(const std::string& more) {
   std::vector<std::string> names;
@@ -130,34 +83,6 @@ std::vector<std::string> LimbsOfPole(const std::string& more) {
     names.push_back(limb.name);
   }
   return names;
-}
-
-/// A ball around a thin mast on a wide chassis would keep the arms away from everything.
-TEST(Draft, AMastOnAChassisIsCoveredShapeByShape) {
-  const std::string mast =
-      "<collision><origin xyz='-0.2 0 0.6'/><geometry><box size='0.12 0.2 1'/></geometry>"
-      "</collision>";
-  std::string urdf = PoleUrdf("<box size='0.7 0.5 0.25'/>", "60");
-  urdf.insert(urdf.find("</link>"), mast);
-  const ProjectDraft draft = DraftProject(urdf, "pole.urdf", {});
-  std::size_t count = 0;
-  for (const CollisionSphere& sphere : draft.spheres) {
-    if (sphere.link != 0) continue;
-    ++count;
-    EXPECT_LT(sphere.radius, 0.25);  // one cover of both has 0.387
-  }
-  EXPECT_LE(count, 12U);
-  EXPECT_EQ(draft.warnings.end(), std::ranges::find_if(draft.warnings, [](const std::string& text) {
-              return text.find("coarse") != std::string::npos;
-            }));
-  for (const Eigen::Vector3d& p : draft.shapes.bodies[0].points) {
-    double outside = std::numeric_limits<double>::infinity();
-    for (const CollisionSphere& sphere : draft.spheres) {
-      if (sphere.link != 0) continue;
-      outside = std::min(outside, (p - sphere.p_link_centre).norm() - sphere.radius);
-    }
-    EXPECT_LT(outside, 0.015);
-  }
 }
 
 /// A joint whose limit is at zero rests so far from it that `--limit-margin-deg 6` finds room.
@@ -174,51 +99,6 @@ TEST(Draft, TheRestOfAnElbowKeepsAwayFromItsLimit) {
   // 2.1 % of the range and 10 degrees; a joint whose zero is far from its limits stays there.
   EXPECT_NEAR(rest("l2_joint"), -(0.042 + 10.0 * kRadiansPerDegree), 1e-3);
   EXPECT_EQ(rest("l1_joint"), 0.0);
-}
-
-/// The URDF of TALOS with its boxes as meshes of twelve triangles in `folder`.
-std::string TalosOfMeshes(const ScratchFolder& folder) {
-  const std::regex box("<box size=\"([^ ]*) ([^ ]*) ([^\"]*)\"/>");
-  std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf")), replaced;
-  int count = 0;
-  for (std::smatch found; std::regex_search(urdf, found, box); urdf = found.suffix()) {
-    std::string obj;
-    for (int corner = 0; corner < 8; ++corner) {
-      obj += "v";
-      for (int i = 0; i < 3; ++i) {
-        obj +=
-            ((corner >> i) % 2 == 0 ? " -" : " ") + std::to_string(500.0 * std::stod(found[i + 1]));
-      }
-      obj += "\n";
-    }
-    for (const char* side : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"}) {
-      obj += std::string("f ") + side + "\n";
-    }
-    const std::string name = "box" + std::to_string(++count) + ".obj";
-    folder.Write(name, obj);
-    replaced += found.prefix().str() + "<mesh filename='" + name + "' scale='1e-3 1e-3 1e-3'/>";
-  }
-  return replaced + urdf;
-}
-
-TEST(DraftStudy, MeshesAreShapesLikeOthers) {
-  const ScratchFolder folder;
-  const std::string urdf = TalosOfMeshes(folder);
-  MeshPlaces places;
-  places.urdf = folder.Write("meshes.urdf", urdf);
-  const ProjectDraft& boxes = DraftFile("models/talos/talos.urdf");
-  const ProjectDraft meshes = DraftProject(urdf, "meshes.urdf", {}, places);
-  EXPECT_EQ(meshes.shapes.meshes, 23);  // those for collisions
-  ASSERT_EQ(meshes.soles.size(), 2U);
-  for (std::size_t i = 0; i < 2; ++i) {
-    // Six decimals of half a length in mm, and single precision.
-    EXPECT_EQ(meshes.soles[i].link, boxes.soles[i].link);
-    EXPECT_LT((meshes.soles[i].lower - boxes.soles[i].lower).norm(), 1e-6);
-    EXPECT_LT((meshes.soles[i].upper - boxes.soles[i].upper).norm(), 1e-6);
-  }
-  EXPECT_EQ(meshes.clusters.size(), boxes.clusters.size());
-  // Points of the boxes' surfaces that the mesh's own points are not.
-  ExpectCovered(boxes, meshes.spheres);
 }
 
 TEST(Draft, MissingMeshesAreOneWarning) {

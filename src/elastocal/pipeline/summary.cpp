@@ -6,19 +6,16 @@
 
 #include <nlohmann/json.hpp>
 
-#include "elastocal/calibration/leg_stiffness.hpp"
 #include "elastocal/pipeline/cause_picture_json.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/diagnose.hpp"
+#include "elastocal/pipeline/limbs_json.hpp"
 #include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// JSON has no infinity or NaN: null.
-Json Finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json FigureByModel(const std::vector<ModelKind>& kinds, const ByModel<ErrorMetrics>& metrics,
                    double ErrorMetrics::*figure) {
@@ -154,39 +151,11 @@ void AddWaistErrors(const CalibrationRun& run, Json& json) {
   }
 }
 
-Json LegJson(const LegStiffness& leg) {
-  Json stiffness = Json::array();
-  Json interval = Json::array();
-  Json known = Json::array();
-  for (int axis = 0; axis < 6; ++axis) {
-    const double unit = axis < 3 ? 1e-3 : 1.0;
-    stiffness.push_back(Finite(unit * leg.stiffness[axis]));
-    interval.push_back({Finite(unit * leg.low[axis]), Finite(unit * leg.high[axis])});
-    known.push_back(leg.known(axis));
-  }
-  Json posture;
-  for (const auto& [joint, position] : leg.posture) posture[joint] = position;
-  return {{"name", leg.leg},        {"posture_rad", posture},  {"load_share", leg.load_share},
-          {"stiffness", stiffness}, {"interval_95", interval}, {"known", known}};
-}
-
-/// How well the ends of limbs are known in the frame of the root link.
-void AddFrames(const CalibrationRun& run, Json& json) {
-  const RobotTree& tree = run.comparison.largest().model.tree;
-  json["frames"] = Json::array();
-  for (const FramePrecision& frame : run.frames) {
-    json["frames"].push_back({{"link", tree.links[static_cast<std::size_t>(frame.link)].name},
-                              {"position_sd_mm", Finite(1e3 * frame.position_sd)},
-                              {"attitude_sd_deg", Finite(frame.attitude_sd * 180.0 / M_PI)}});
-  }
-}
-
 /// The legs, and where a foot or a cluster moved that should not.
 void AddStance(const CalibrationRun& run, Json& json) {
   const CalibrationResult& result = run.comparison.largest();
-  for (const LegStiffness& leg : AssessLegs(result, run.recording)) {
-    json["legs"].push_back(LegJson(leg));
-  }
+  const Json legs = LegsJson(run);
+  if (!legs.empty()) json["legs"] = legs;
   json["loose_footings"] = Json::array();
   for (const LooseFooting& footing : result.loose_footings) {
     json["loose_footings"].push_back({{"posture", footing.posture},
@@ -382,7 +351,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   AddProblem(run, json);
   AddStatistics(run, json);
   AddErrors(run, json);
-  AddFrames(run, json);
+  json["frames"] = FramesJson(run);
   if (!run.trials.empty()) {
     AddTrials(run, json);
     AddHeldOut(run, json);

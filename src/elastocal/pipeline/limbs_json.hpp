@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "elastocal/pipeline/calibrate_experiment.hpp"
+
+namespace elastocal {
+
+/// A number, or null for infinity and NaN, which JSON does not have.
+nlohmann::ordered_json Finite(double value);
+
+/// How well the ends of limbs are known in the frame of the root link: `frames` of summary.json.
+nlohmann::ordered_json FramesJson(const CalibrationRun& run);
+
+/// How stiff the legs are at the waist: `legs` of summary.json. Null for a robot without legs.
+nlohmann::ordered_json LegsJson(const CalibrationRun& run);
+
+}  // namespace elastocal
