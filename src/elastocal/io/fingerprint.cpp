@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/robot/coordinates.hpp"
 
 namespace elastocal {
 namespace {
@@ -61,10 +62,10 @@ std::string NominalFingerprint(const ErrorModel& model) {
     text.Add(joint.name);
     text.Add(joint.type == JointType::kRevolute ? "revolute" : "prismatic");
     text.Add(joint.parent_body == 0 ? "waist" : tree.joints[joint.parent_body - 1].name);
-    text.Add(tree.joints[tree.coordinate_joint[joint.coordinate]].name);
+    text.Add(JointOfCoordinate(tree, joint.coordinate).name);
     text.Add(joint.multiplier);
     for (const Drive& drive : joint.more) {
-      text.Add(tree.joints[tree.coordinate_joint[drive.coordinate]].name);
+      text.Add(JointOfCoordinate(tree, drive.coordinate).name);
       text.Add(drive.multiplier);
     }
     text.Add(joint.offset);

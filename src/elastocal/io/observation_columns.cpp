@@ -6,6 +6,7 @@
 
 #include "elastocal/io/recording_columns.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -30,7 +31,7 @@ void CheckObservedJoints(const Table& table, const Project& project,
   for (int link : links) {
     for (int k : JointsToBody(tree, tree.links[link].body)) {
       const int coordinate = tree.joints[k].coordinate;
-      const std::string& name = NameOfCoordinate(tree, coordinate);
+      const std::string& name = JointOfCoordinate(tree, coordinate).name;
       if (columns.coordinates[coordinate] >= 0 || project.recording.not_recorded.contains(name)) {
         continue;
       }
@@ -83,17 +84,13 @@ bool ObservationColumns::measures() const {
                                    [](const std::vector<int>& of) { return !of.empty(); });
 }
 
-const std::string& NameOfCoordinate(const RobotTree& tree, int coordinate) {
-  return tree.joints[tree.coordinate_joint[coordinate]].name;
-}
-
 ObservationColumns FindObservationColumns(const Table& table, const Project& project) {
   const RobotTree& tree = project.tree;
   const ContactProject& contact = *project.contact;
   ColumnRoles roles;
   int quantities = 0;
   for (int c = 0; c < tree.coordinate_count(); ++c) {
-    AddRole(project, JointColumn(project, NameOfCoordinate(tree, c)), quantities++, roles);
+    AddRole(project, JointColumn(project, JointOfCoordinate(tree, c).name), quantities++, roles);
   }
   const std::vector<int> first = AddInstrumentRoles(project, quantities, roles);
   const int plate = quantities;

@@ -26,7 +26,4 @@ struct ObservationColumns {
 /// joint that moves a foot or what is observed and is not known.
 ObservationColumns FindObservationColumns(const Table& table, const Project& project);
 
-/// The joint of a coordinate.
-const std::string& NameOfCoordinate(const RobotTree& tree, int coordinate);
-
 }  // namespace elastocal

@@ -9,6 +9,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/measurement/encoder_starts.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -88,7 +89,7 @@ std::vector<std::string> SessionReader::ByEncoders(const Eigen::MatrixXd& q,
   readings.leftCols(q.cols()) = q;
   std::vector<std::string> names;
   for (int c = 0; c < static_cast<int>(q.cols()); ++c) {
-    names.push_back(NameOfCoordinate(project_.tree, c));
+    names.push_back(JointOfCoordinate(project_.tree, c).name);
   }
   if (!columns_.ignored.empty()) {
     readings.rightCols(readings.cols() - q.cols()) = StackRows(ignored_, sessions.size());

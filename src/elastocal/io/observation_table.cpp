@@ -16,6 +16,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/observation/standing_robot.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -58,7 +59,7 @@ ObservationFile ReadObservationFile(const std::filesystem::path& file, const Pro
     const int row = static_cast<int>(postures.line.size());
     postures.line.push_back(table.line());
     for (int c = 0; c < tree.coordinate_count(); ++c) {
-      const auto given = project.recording.not_recorded.find(NameOfCoordinate(tree, c));
+      const auto given = project.recording.not_recorded.find(JointOfCoordinate(tree, c).name);
       const double elsewhere = given == project.recording.not_recorded.end() ? 0.0 : given->second;
       q.push_back(columns.coordinates[c] < 0 ? elsewhere : table.Number(columns.coordinates[c]));
     }
@@ -80,7 +81,7 @@ ObservationFile ReadObservationFile(const std::filesystem::path& file, const Pro
   postures.markers.resize(postures.q.rows(), 0);
   for (int c = 0; c < tree.coordinate_count(); ++c) {
     if (columns.coordinates[c] < 0) {
-      postures.joints_not_recorded.push_back(NameOfCoordinate(tree, c));
+      postures.joints_not_recorded.push_back(JointOfCoordinate(tree, c).name);
     }
   }
   CheckPlausible(postures, tree);

@@ -8,6 +8,7 @@
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/project/project_sections.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -65,7 +66,7 @@ std::string FormatPostureFile(const RobotTree& tree, const std::vector<ChainPost
       text += "      - {";
       for (int i = 0; i < tree.coordinate_count(); ++i) {
         text += fmt::format("{}{}: {:.12g}", i > 0 ? ", " : "",
-                            Quoted(tree.joints[tree.coordinate_joint[i]].name), q[i]);
+                            Quoted(JointOfCoordinate(tree, i).name), q[i]);
       }
       text += "}\n";
     }

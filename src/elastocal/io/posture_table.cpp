@@ -18,6 +18,7 @@
 #include "elastocal/measurement/marker_units.hpp"
 #include "elastocal/readers/joint_columns.hpp"
 #include "elastocal/readers/times.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/tables/table_writer.hpp"
 #include "elastocal/tables/text.hpp"
 
@@ -26,10 +27,6 @@ namespace {
 
 /// More are no static postures but a motion; and they bound the memory that a file can take.
 constexpr int kMostPostures = 100000;
-
-const std::string& CoordinateName(const RobotTree& tree, int coordinate) {
-  return tree.joints[tree.coordinate_joint[coordinate]].name;
-}
 
 /// Which column of a posture table holds what; -1 where there is none.
 struct PostureColumns {
@@ -47,7 +44,7 @@ void CheckMovingJoints(const Table& table, const Project& project, const Posture
     const Marker& marker = project.markers[m];
     for (int k : JointsToBody(tree, tree.links[marker.link].body)) {
       const int coordinate = tree.joints[k].coordinate;
-      const Joint& joint = tree.joints[tree.coordinate_joint[coordinate]];
+      const Joint& joint = JointOfCoordinate(tree, coordinate);
       if (columns.coordinates[coordinate] >= 0) continue;
       if (project.recording.not_recorded.contains(joint.name)) continue;
       table.Fail("the column " + Quote(JointColumn(project, joint.name)) + " of joint " +
@@ -100,7 +97,7 @@ PostureColumns FindPostureColumns(const Table& table, const Project& project) {
   ColumnRoles roles;
   AddRole(project, project.recording.time, quantities++, roles);
   for (int c = 0; c < coordinates; ++c) {
-    AddRole(project, JointColumn(project, CoordinateName(tree, c)), quantities++, roles);
+    AddRole(project, JointColumn(project, JointOfCoordinate(tree, c).name), quantities++, roles);
   }
   for (const Marker& marker : project.markers) {
     for (const std::string& column : MarkerColumns(project, marker.name)) {
@@ -141,7 +138,7 @@ void ReadPostures(const Project& project, const PostureColumns& columns, Table& 
   const auto& given = project.recording.not_recorded;
   std::vector<double> elsewhere;  // positions of joints without a column
   for (int c = 0; c < project.tree.coordinate_count(); ++c) {
-    const auto position = given.find(CoordinateName(project.tree, c));
+    const auto position = given.find(JointOfCoordinate(project.tree, c).name);
     elsewhere.push_back(position == given.end() ? 0.0 : position->second);
   }
   std::vector<double> time, q, markers;
@@ -257,7 +254,7 @@ PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
   NameMarkers(columns, project, result);
   for (int c = 0; c < project.tree.coordinate_count(); ++c) {
     if (columns.coordinates[c] >= 0) continue;
-    recording.joints_not_recorded.push_back(CoordinateName(project.tree, c));
+    recording.joints_not_recorded.push_back(JointOfCoordinate(project.tree, c).name);
   }
   CheckPlausible(recording, project.tree);
   if (const auto other =
@@ -281,7 +278,7 @@ void WritePostureTable(const std::filesystem::path& file, const Recording& recor
   std::vector<int> coordinates;  // that the recording holds
   for (int c = 0; c < tree.coordinate_count(); ++c) {
     const bool recorded =
-        std::find(absent.begin(), absent.end(), CoordinateName(named, c)) == absent.end();
+        std::find(absent.begin(), absent.end(), JointOfCoordinate(named, c).name) == absent.end();
     if (recorded) coordinates.push_back(c);
   }
   TableWriter table;
@@ -289,7 +286,7 @@ void WritePostureTable(const std::filesystem::path& file, const Recording& recor
   for (const std::string& marker : recording.marker_names) {
     for (const std::string& column : DefaultMarkerColumns(marker)) table.Add(column);
   }
-  for (int c : coordinates) table.Add(CoordinateName(named, c));
+  for (int c : coordinates) table.Add(JointOfCoordinate(named, c).name);
   table.EndRow();
   for (int i = 0; i < recording.posture_count(); ++i) {
     if (timed) table.Add(recording.time_s[i]);

@@ -115,8 +115,10 @@ class UpAxis {
 };
 
 /// Samples all trials; while one is sampled, the markers of the next are read on another thread.
+/// `logged` gets the joints that a log has.
 std::vector<TrialSamples> SampleAll(const std::vector<TrialFiles>& trials, const MarkedRobot& robot,
-                                    const Project& project, UpAxis& up) {
+                                    const Project& project, UpAxis& up,
+                                    std::set<std::string>& logged) {
   std::vector<TrialSamples> samples;
   const InterruptionOfCaller interruption;
   const auto start_reading = [&](std::size_t i) {
@@ -128,6 +130,7 @@ std::vector<TrialSamples> SampleAll(const std::vector<TrialFiles>& trials, const
   std::future<MarkerFile> markers = start_reading(0);
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const JointLog log = ReadJointFile(trials[i].joints, trials[i].reading, project);
+    logged.insert(log.names.begin(), log.names.end());
     while (markers.wait_for(kBetweenLooks) != std::future_status::ready) InterruptionPoint();
     MarkerFile file = markers.get();
     up.Take(file);
@@ -196,7 +199,8 @@ RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const
   std::vector<TrialSamples> calibration, validation;
   RecordingFolder result;
   UpAxis up(experiment);
-  std::vector<TrialSamples> sampled = SampleAll(experiment.trials, robot, project, up);
+  std::set<std::string> logged;
+  std::vector<TrialSamples> sampled = SampleAll(experiment.trials, robot, project, up, logged);
   SampleOddOnesAgain(experiment.trials, robot, project, sampled);
   RefuseExchangedLogs(
       [&](std::size_t markers_of, std::size_t log_of) {
@@ -219,6 +223,11 @@ RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const
   result.calibration = MergeTrials(robot, calibration, source);
   result.validation = MergeTrials(robot, validation, source);
   result.calibration.gravity = result.validation.gravity = up.gravity();
+  for (const auto& [name, position] : project.recording.not_recorded) {
+    if (logged.contains(name)) continue;
+    result.calibration.joints_not_recorded.push_back(name);
+    result.validation.joints_not_recorded.push_back(name);
+  }
   if (result.calibration.posture_count() + result.validation.posture_count() == 0) {
     throw InputError(source + ": no trial can be used; " + result.findings.front());
   }

@@ -15,6 +15,7 @@
 #include "elastocal/math/transform.hpp"
 #include "elastocal/measurement/moments.hpp"
 #include "elastocal/measurement/trial_names.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/linkage.hpp"
 #include "elastocal/screening/positions_by_markers.hpp"
@@ -230,7 +231,7 @@ class OrderSearch {
 
 std::string DescribeOrder(const std::vector<int>& order, const RobotTree& tree,
                           const std::string& trials) {
-  const auto name = [&](int c) { return tree.joints[Size(tree.coordinate_joint[Size(c)])].name; };
+  const auto name = [&](int c) { return JointOfCoordinate(tree, c).name; };
   std::string text;
   for (std::size_t c = 0; c < order.size(); ++c) {
     const auto at = static_cast<int>(c);
@@ -256,9 +257,7 @@ std::vector<TriedCorrection> FindColumnOrders(const ErrorModel& nominal,
   const double far = std::min(kFarFromNominal, kFarShare * RobotSize(tree));
   std::map<std::vector<int>, std::vector<int>> trials_of;  // by order
   std::vector<TriedCorrection> found;
-  const auto name_of = [&](int c) {
-    return tree.joints[Size(tree.coordinate_joint[Size(c)])].name;
-  };
+  const auto name_of = [&](int c) { return JointOfCoordinate(tree, c).name; };
   struct Copied {
     Recording told;  ///< the copy where the markers show it
     std::vector<int> trials;

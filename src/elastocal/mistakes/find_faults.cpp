@@ -10,11 +10,14 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
+#include "elastocal/mistakes/impossible_gears.hpp"
 #include "elastocal/mistakes/missed_springs.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/recordings_apart.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/mistakes/trial_offset.hpp"
 #include "elastocal/mistakes/tried_correction.hpp"
+#include "elastocal/mistakes/unrecorded_motion.hpp"
 #include "elastocal/mistakes/up_by_loads.hpp"
 #include "elastocal/screening/camera_scale.hpp"
 #include "elastocal/screening/carrying_link.hpp"
@@ -30,70 +33,6 @@ namespace {
 
 constexpr double kLeftByOdd = 0.5;        // of the error of a fit, without them
 constexpr double kLeftBesideGears = 0.8;  // of the error of a fit with wrong gains as gears
-
-/// Gains of sliding joints are what a wrong scale of the cameras looks like: several that are alike
-/// are one, and of one that the other lengths bear out both are said. Nothing for other faults.
-std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
-                          const CalibrationResult& result, const CalibrationOptions& options) {
-  constexpr double kAlike = 1e-3, kPlain = 2.0, kConsistent = 3.0;
-  const RobotTree& tree = result.model.tree;
-  double least = 1.0, most = -1.0, sd = 0.0;
-  std::string joints;
-  for (const RecordingFault& fault : faults) {
-    const Joint& joint =
-        tree.joints[Size(tree.coordinate_joint[Size(std::max(0, fault.coordinate))])];
-    if (fault.kind != FaultKind::kJointGain || fault.coordinate < 0 || fault.trial >= 0 ||
-        joint.type != JointType::kPrismatic) {
-      return "";
-    }
-    least = std::min(least, fault.size);
-    most = std::max(most, fault.size);
-    sd = std::max(sd, fault.sd);
-    joints += (joints.empty() ? "" : ", ") + joint.name;
-  }
-  if (faults.empty() || most - least > kAlike + kConsistent * sd) return "";
-  const double size = 1.0 / (1.0 + 0.5 * (least + most)) - 1.0;
-  const std::string accept = fmt::format("--accept scale={:.5f} corrects it", 1.0 + size);
-  if (faults.size() > 1) {
-    return fmt::format(
-        "the cameras' positions seem {:.4f} +- {:.4f} times the true ones: {} seem to be wrong by "
-        "the same factor ({})",
-        1.0 + size, sd, joints, accept);
-  }
-  const auto scale = EstimateCommonScale(result, options);
-  if (!scale || std::abs(scale->size - size) > kConsistent * scale->sd ||
-      std::abs(scale->size) < kPlain * scale->sd) {
-    return "";
-  }
-  return fmt::format(
-      "the cameras' positions seem {:.4f} +- {:.4f} times the true ones, or those of {} {:.4f} "
-      "times; the other lengths of the robot say {:.4f} +- {:.4f} of the cameras. Measure a known "
-      "length first (if the cameras are wrong, {}; else --accept gain:{}={:.5f})",
-      1.0 + size, sd, joints, 1.0 + most, 1.0 + scale->size, scale->sd, accept, joints, 1.0 + most);
-}
-
-/// Joints whose gear or lead seems further off than any is made (FindRecordingFaults: 0.5 %): what
-/// was taken for a cause of the robot is a wrong gain in its log.
-std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result) {
-  constexpr double kLargestGear = 0.005, kCertain = 8.0;
-  std::vector<RecordingFault> faults;
-  for (int i = 0; i < result.model.parameter_count(); ++i) {
-    const Parameter& parameter = result.model.parameters[Size(i)];
-    if (parameter.correction < 0) continue;
-    const Correction& correction = result.model.elasticity.corrections[Size(parameter.correction)];
-    const double ratio = result.delta[i];
-    if (correction.shape != CorrectionShape::kGear || std::abs(ratio) < kLargestGear ||
-        std::abs(ratio) < kCertain * result.sd[i]) {
-      continue;
-    }
-    RecordingFault fault;
-    fault.coordinate = result.model.tree.joints[Size(correction.joint)].coordinate;
-    fault.size = 1.0 / (1.0 + ratio) - 1.0;
-    fault.sd = result.sd[i];
-    faults.push_back(fault);
-  }
-  return faults;
-}
 
 struct FoundFault : GeneralFault {
   bool of_one_trial = false;  ///< FindTrialOffset: which trial is wrong, others do not tell
@@ -259,6 +198,12 @@ class FaultsInTurn {
     faults = OfCoarsePositions();
     if (!faults.empty()) return faults;
     Look();
+    if (!few_->complete) {
+      const std::string motion = FindUnrecordedMotion(project_, robot_, recording_, fit());
+      if (!motion.empty()) return {motion};
+      const std::string apart = FindRecordingsApart(project_, robot_, recording_, fit());
+      if (!apart.empty()) return {apart};
+    }
     if (!gears_.empty()) return OfGears();
     return found_ ? OfGeneralFault() : OfFewRowsOrMarkers();
   }

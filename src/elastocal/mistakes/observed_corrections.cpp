@@ -14,6 +14,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -33,7 +34,7 @@ int CoordinateOf(const std::string& name, const std::string& joint, const RobotT
 }
 
 std::string JointName(const RobotTree& tree, int coordinate) {
-  return tree.joints[Size(tree.coordinate_joint[Size(coordinate)])].name;
+  return JointOfCoordinate(tree, coordinate).name;
 }
 
 std::vector<char> PosturesNamed(const std::string& name, const std::string& file, int from,
@@ -220,8 +221,7 @@ std::optional<std::string> NameOfFault(const ObservationFault& fault, const Obse
   if (fault.kind == ObservationFaultKind::kJointGain) {
     return fmt::format("gain:{}{}={:.5f}", joint, in.empty() ? "" : "@" + in, 1.0 + fault.size);
   }
-  const bool slides = tree.joints[Size(tree.coordinate_joint[Size(fault.coordinate)])].type ==
-                      JointType::kPrismatic;
+  const bool slides = JointOfCoordinate(tree, fault.coordinate).type == JointType::kPrismatic;
   const double size = fault.size / (slides ? 1e-3 : M_PI / 180.0);
   std::string names;
   int number = 0;  // of the posture in its file

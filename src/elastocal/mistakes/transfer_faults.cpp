@@ -20,6 +20,7 @@
 #include "elastocal/mistakes/held_out_contrast.hpp"
 #include "elastocal/mistakes/moved_between.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/robot/linkage.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 
@@ -188,7 +189,7 @@ class TransferSearch {
       const bool all = one.trial < 0 && one.posture == 0 && one.end == 0;
       if (!all && LeftWithout(in_all) > kAsMuch * LeftWithout(one)) continue;
       const RobotTree& tree = of_.robot.model.tree;
-      joints.push_back(tree.joints[Size(tree.coordinate_joint[Size(one.coordinate)])].name);
+      joints.push_back(JointOfCoordinate(tree, one.coordinate).name);
     }
     if (joints.empty()) return "";
     return fmt::format(

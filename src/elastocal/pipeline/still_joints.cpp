@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/robot/coordinates.hpp"
 
 namespace elastocal {
 
@@ -20,7 +21,7 @@ std::string StillJoints(const ErrorModel& model, const Recording& recording) {
   const auto& unknown = recording.joints_not_recorded;
   std::vector<std::string> still;
   for (const int c : moving) {
-    const std::string& name = model.tree.joints[Size(model.tree.coordinate_joint[Size(c)])].name;
+    const std::string& name = JointOfCoordinate(model.tree, c).name;
     const double range = recording.q.col(c).maxCoeff() - recording.q.col(c).minCoeff();
     if (range < kStill && std::count(unknown.begin(), unknown.end(), name) == 0) {
       still.push_back(name);

@@ -18,17 +18,13 @@
 #include "elastocal/planning/project_motion.hpp"
 #include "elastocal/planning/stopped_joints.hpp"
 #include "elastocal/robot/collision.hpp"
+#include "elastocal/robot/coordinates.hpp"
 
 namespace elastocal {
 namespace {
 
 double TimeAt(const JointMotion& motion, Eigen::Index i) {
   return motion.time_s.size() > 0 ? motion.time_s[i] : static_cast<double>(i);
-}
-
-const std::string& CoordinateName(const RobotTree& tree, Eigen::Index c) {
-  const int joint = tree.coordinate_joint[static_cast<std::size_t>(c)];
-  return tree.joints[static_cast<std::size_t>(joint)].name;
 }
 
 void KeepLarger(double value, double time_s, const std::string& where, MotionExtreme& extreme) {
@@ -67,7 +63,7 @@ void CheckLimits(const Project& project, CompensatedMotion& result) {
   const JointMotion& motion = result.planned.motion;
   result.position.value = std::numeric_limits<double>::infinity();
   for (Eigen::Index c = 0; c < motion.q.cols(); ++c) {
-    const std::string& name = CoordinateName(project.tree, c);
+    const std::string& name = JointOfCoordinate(project.tree, c).name;
     const JointLimits& limits = project.tree
                                     .joints[static_cast<std::size_t>(
                                         project.tree.coordinate_joint[static_cast<std::size_t>(c)])]
@@ -258,7 +254,7 @@ std::vector<std::string> OpenJoints(const Project& project, const JointMotion& m
   std::vector<std::string> names;
   for (Eigen::Index c = 0; c < motion.q.cols(); ++c) {
     if (!motion.q.col(c).array().isNaN().all()) continue;
-    names.push_back(CoordinateName(project.tree, c));
+    names.push_back(JointOfCoordinate(project.tree, c).name);
   }
   return names;
 }
@@ -359,7 +355,8 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
     result.residual_rad = std::max(result.residual_rad, compensator.residual_rad());
     Eigen::Index joint = 0;
     const double change = (compensator.command() - nominal).cwiseAbs().maxCoeff(&joint);
-    KeepLarger(change, TimeAt(planned, i), CoordinateName(project.tree, joint), result.correction);
+    KeepLarger(change, TimeAt(planned, i), JointOfCoordinate(project.tree, joint).name,
+               result.correction);
     compensator.Forward(compensator.command(), torque, feet);
     for (std::size_t link = 0; link < T_root_link.size(); ++link) {
       T_root_link[link] = compensator.link_pose(static_cast<int>(link));

@@ -6,6 +6,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/planning/design_follow_up.hpp"
 #include "elastocal/planning/design_observations.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
@@ -66,7 +67,7 @@ std::string WithNext(const std::string& check, const Project& project, const Nex
     for (const Eigen::VectorXd& q : chain.q) {
       nlohmann::ordered_json posture;
       for (int i = 0; i < project.tree.coordinate_count(); ++i) {
-        posture[project.tree.joints[project.tree.coordinate_joint[i]].name] = q[i];
+        posture[JointOfCoordinate(project.tree, i).name] = q[i];
       }
       postures.push_back(std::move(posture));
     }

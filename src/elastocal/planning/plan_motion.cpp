@@ -16,6 +16,7 @@
 #include "elastocal/planning/simulate_experiment.hpp"
 #include "elastocal/planning/stand_at_tables.hpp"
 #include "elastocal/planning/touch_motion.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/robot/motion_setup.hpp"
 
 namespace elastocal {
@@ -127,10 +128,9 @@ std::vector<LimitUse> LimitUses(const Project& project, const MotionMargins& mar
 }
 
 std::string DescribeLeftOut(const Project& project, const PlannedTour& set, const LeftOut& left) {
-  const std::string what =
-      left.sine >= 0
-          ? "sine of " + project.tree.joints[project.tree.coordinate_joint[left.sine]].name
-          : fmt::format("posture {}", left.posture + 1);
+  const std::string what = left.sine >= 0
+                               ? "sine of " + JointOfCoordinate(project.tree, left.sine).name
+                               : fmt::format("posture {}", left.posture + 1);
   return fmt::format("{}, {} is left out: {} ({})", set.name, what, ReasonText(project, left),
                      left.at_rest ? "at rest" : "on every way there");
 }
@@ -141,7 +141,7 @@ std::vector<std::string> DescribeBeyondRanges(const Project& project, const Join
   constexpr double kTolerance = 1e-6;
   std::vector<std::string> beyond;
   for (Eigen::Index c = 0; c < motion.q.cols(); ++c) {
-    const Joint& joint = project.tree.joints[Size(project.tree.coordinate_joint[Size(c)])];
+    const Joint& joint = JointOfCoordinate(project.tree, c);
     const auto [widest_lower, widest_upper] = PostureRange(joint, kUsualLimitMargin);
     const double lower = project.motion.lower[c], upper = project.motion.upper[c];
     const double plainly = kPlainly * (widest_upper - widest_lower);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "elastocal/math/interruption.hpp"
+#include "elastocal/robot/coordinates.hpp"
 
 namespace elastocal {
 namespace {
@@ -58,9 +59,8 @@ Violation WorstViolation(FeasibleSet& set, const Eigen::VectorXd& x) {
   };
   const RobotTree& tree = set.chain.tree();
   for (int i = 0; i < set.variable_count(); ++i) {
-    note(x[i], set.lower[i], set.upper[i], [&] {
-      return "limit of " + tree.joints[tree.coordinate_joint[set.chain.coordinates()[i]]].name;
-    });
+    note(x[i], set.lower[i], set.upper[i],
+         [&] { return "limit of " + JointOfCoordinate(tree, set.chain.coordinates()[i]).name; });
   }
   Eigen::VectorXd values;
   Eigen::MatrixXd jacobian;

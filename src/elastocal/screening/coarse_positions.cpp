@@ -7,6 +7,7 @@
 
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/measurement/column_step.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/screening/distance_parabola.hpp"
 
 namespace elastocal {
@@ -28,7 +29,7 @@ constexpr double kShown = 0.1;        // of the largest displacement
 constexpr std::size_t kFewestShown = 5;
 
 bool IsSliding(const RobotTree& tree, int coordinate) {
-  return tree.joints[tree.coordinate_joint[coordinate]].type == JointType::kPrismatic;
+  return JointOfCoordinate(tree, coordinate).type == JointType::kPrismatic;
 }
 
 /// A joint is shown in postures whose markers it moves by a tenth or more of how far it moves those
@@ -178,7 +179,7 @@ std::string Describe(const ScatteredPositions& scattered, const RobotTree& tree)
                 "makes %.0f %% of the squared distances: a noisy or loose encoder, or play?",
                 scattered.off / (slides ? 1e-3 : M_PI / 180.0), slides ? "mm" : "deg",
                 100.0 * (1.0 - scattered.left));
-  return tree.joints[tree.coordinate_joint[scattered.coordinate]].name + text;
+  return JointOfCoordinate(tree, scattered.coordinate).name + text;
 }
 
 bool IsTooCoarse(const CoarsePositions& coarse, const RobotTree& tree) {
@@ -195,7 +196,7 @@ std::string Describe(const CoarsePositions& coarse, const RobotTree& tree) {
                 "encoder is as coarse",
                 coarse.step / unit, slides ? "mm" : "deg", coarse.off / unit,
                 slides ? "mm" : "deg");
-  return tree.joints[tree.coordinate_joint[coarse.coordinate]].name + text;
+  return JointOfCoordinate(tree, coarse.coordinate).name + text;
 }
 
 }  // namespace elastocal

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/mistakes/impossible_gears.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/screening/camera_scale.hpp"
+
+namespace elastocal {
+
+std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
+                          const CalibrationResult& result, const CalibrationOptions& options) {
+  constexpr double kAlike = 1e-3, kPlain = 2.0, kConsistent = 3.0;
+  const RobotTree& tree = result.model.tree;
+  double least = 1.0, most = -1.0, sd = 0.0;
+  std::string joints;
+  for (const RecordingFault& fault : faults) {
+    const Joint& joint =
+        tree.joints[Size(tree.coordinate_joint[Size(std::max(0, fault.coordinate))])];
+    if (fault.kind != FaultKind::kJointGain || fault.coordinate < 0 || fault.trial >= 0 ||
+        joint.type != JointType::kPrismatic) {
+      return "";
+    }
+    least = std::min(least, fault.size);
+    most = std::max(most, fault.size);
+    sd = std::max(sd, fault.sd);
+    joints += (joints.empty() ? "" : ", ") + joint.name;
+  }
+  if (faults.empty() || most - least > kAlike + kConsistent * sd) return "";
+  const double size = 1.0 / (1.0 + 0.5 * (least + most)) - 1.0;
+  const std::string accept = fmt::format("--accept scale={:.5f} corrects it", 1.0 + size);
+  if (faults.size() > 1) {
+    return fmt::format(
+        "the cameras' positions seem {:.4f} +- {:.4f} times the true ones: {} seem to be wrong by "
+        "the same factor ({})",
+        1.0 + size, sd, joints, accept);
+  }
+  const auto scale = EstimateCommonScale(result, options);
+  if (!scale || std::abs(scale->size - size) > kConsistent * scale->sd ||
+      std::abs(scale->size) < kPlain * scale->sd) {
+    return "";
+  }
+  return fmt::format(
+      "the cameras' positions seem {:.4f} +- {:.4f} times the true ones, or those of {} {:.4f} "
+      "times; the other lengths of the robot say {:.4f} +- {:.4f} of the cameras. Measure a known "
+      "length first (if the cameras are wrong, {}; else --accept gain:{}={:.5f})",
+      1.0 + size, sd, joints, 1.0 + most, 1.0 + scale->size, scale->sd, accept, joints, 1.0 + most);
+}
+
+std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result) {
+  constexpr double kLargestGear = 0.005, kCertain = 8.0;
+  std::vector<RecordingFault> faults;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[Size(i)];
+    if (parameter.correction < 0) continue;
+    const Correction& correction = result.model.elasticity.corrections[Size(parameter.correction)];
+    const double ratio = result.delta[i];
+    if (correction.shape != CorrectionShape::kGear || std::abs(ratio) < kLargestGear ||
+        std::abs(ratio) < kCertain * result.sd[i]) {
+      continue;
+    }
+    RecordingFault fault;
+    fault.coordinate = result.model.tree.joints[Size(correction.joint)].coordinate;
+    fault.size = 1.0 / (1.0 + ratio) - 1.0;
+    fault.sd = result.sd[i];
+    faults.push_back(fault);
+  }
+  return faults;
+}
+
+}  // namespace elastocal

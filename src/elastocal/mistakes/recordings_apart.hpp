@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/project/project.hpp"
+#include "elastocal/recorded/recorded_model.hpp"
+
+namespace elastocal {
+
+/// Recording folders that were given together and that no one robot explains, in words; empty where
+/// there is one folder, or where one robot explains them.
+///
+/// Each folder is fitted by itself. They are apart if that leaves less than half of the error of
+/// `together` (rms distance of the markers), and 0.2 mm less. Then one robot whose markers are all
+/// elsewhere in each folder is fitted as well: where it leaves hardly more than the fits apart,
+/// markers were glued on anew between the folders; else the robots differ, or one robot was
+/// changed. `recording`: that of `together`.
+std::string FindRecordingsApart(const Project& project, const RecordedModel& robot,
+                                const Recording& recording, const CalibrationResult& together);
+
+}  // namespace elastocal
