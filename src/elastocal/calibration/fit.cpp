@@ -29,6 +29,7 @@ constexpr int kMaxSolves = 6;  // for the last digits, where the iterations of o
 constexpr int kMaxPolishing = 20;
 constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
 constexpr double kSlow = 0.3;             // of the step before
+constexpr double kWorse = 2.0;            // times the cost before: the steps lead away
 
 /// Whether any elastic parameter is estimated or known: else loads do not matter.
 bool IsElasticFit(const ErrorModel& model, const std::vector<int>& free,
@@ -175,7 +176,8 @@ bool UpdateMotion(const FitProblem& problem, const Selection& selection,
 
 /// From a solution for loads as they were: steps after each of which the loads follow it. The
 /// information hardly changes any more, so that one linearisation serves them all, unless they fall
-/// slowly.
+/// slowly. Where one leads away, the solution is the one before it: noise that came out far too
+/// small leaves the information nearly singular.
 void FollowLoads(const FitProblem& problem, const Selection& selection,
                  const std::vector<int>& free, Fit& fit) {
   FitResiduals residuals(problem, selection, free, fit);
@@ -183,17 +185,21 @@ void FollowLoads(const FitProblem& problem, const Selection& selection,
   Eigen::VectorXd x = body.Start();
   body.Evaluate(x, true);
   std::optional<NormalEquations> equations(std::in_place, body);
-  double before = std::numeric_limits<double>::infinity();
+  double before = std::numeric_limits<double>::infinity(), cost = CostOf(body);
   for (int round = 0; round < kMaxPolishing; ++round) {
     const Eigen::VectorXd step =
         BoundedStep(equations->information(), equations->gradient(), x(equations->unknowns()),
                     equations->Positions(body.nonnegative));
-    x += equations->Expand(step);
+    const Eigen::VectorXd next = x + equations->Expand(step);
     ++fit.iterations;
-    residuals.loads = ComputeLoads(problem.model, problem.recording, body.ToErrors(x),
-                                   body.ToPlacement(x), problem.options.load);
-    body.LoadsFollow(x);
-    body.Evaluate(x, true);
+    residuals.loads = ComputeLoads(problem.model, problem.recording, body.ToErrors(next),
+                                   body.ToPlacement(next), problem.options.load);
+    body.LoadsFollow(next);
+    body.Evaluate(next, true);
+    const double found = CostOf(body);
+    if (!(found < kWorse * cost)) break;
+    x = next;
+    cost = found;
     const double change = step.cwiseAbs().maxCoeff();
     if (change < kLoadTolerance) break;
     if (change < kSlow * before) {
@@ -204,7 +210,7 @@ void FollowLoads(const FitProblem& problem, const Selection& selection,
     before = change;
   }
   Take(body, x, fit);
-  fit.final_cost = CostOf(body);
+  fit.final_cost = cost;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "elastocal/calibration/turned_axes.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/measurement/recorded_joints.hpp"
 
 namespace elastocal {
 namespace {
@@ -40,7 +41,10 @@ std::vector<LogSuspicion> SignsOfTurnedAxes(const CalibrationResult& result,
     const int before = joints[Size(joint)].parent_body - 1;
     for (const int k : {joint, before}) {
       if (k < 0 || !coordinates.insert(joints[Size(k)].coordinate).second) continue;
-      suspicions.push_back(SignOf(joints[Size(k)].coordinate, recording));
+      const int coordinate = joints[Size(k)].coordinate;
+      if (IsRecorded(recording, result.model.tree, coordinate)) {
+        suspicions.push_back(SignOf(coordinate, recording));
+      }
     }
   }
   return suspicions;

@@ -12,6 +12,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
+#include "elastocal/measurement/recorded_joints.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/robot/coordinates.hpp"
 #include "elastocal/robot/robot_tree.hpp"
@@ -36,8 +37,7 @@ bool Slides(const RobotTree& tree, int coordinate) {
 std::vector<int> NotRecorded(const ErrorModel& model, const Recording& recording) {
   std::vector<int> coordinates;
   for (int c = 0; c < model.tree.coordinate_count(); ++c) {
-    const auto& absent = recording.joints_not_recorded;
-    if (std::ranges::find(absent, JointOfCoordinate(model.tree, c).name) == absent.end()) continue;
+    if (IsRecorded(recording, model.tree, c)) continue;
     const bool moves = std::ranges::any_of(model.active_joints, [&](int k) {
       return std::ranges::any_of(DrivesOf(model.tree.joints[Size(k)]),
                                  [&](const Drive& drive) { return drive.coordinate == c; });

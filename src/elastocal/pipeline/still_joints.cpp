@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
-#include "elastocal/robot/coordinates.hpp"
+#include "elastocal/measurement/recorded_joints.hpp"
 
 namespace elastocal {
 
@@ -18,12 +18,11 @@ std::string StillJoints(const ErrorModel& model, const Recording& recording) {
   for (const int k : model.active_joints) {
     for (const Drive& drive : DrivesOf(model.tree.joints[Size(k)])) moving.insert(drive.coordinate);
   }
-  const auto& unknown = recording.joints_not_recorded;
   std::vector<std::string> still;
   for (const int c : moving) {
     const std::string& name = JointOfCoordinate(model.tree, c).name;
     const double range = recording.q.col(c).maxCoeff() - recording.q.col(c).minCoeff();
-    if (range < kStill && std::count(unknown.begin(), unknown.end(), name) == 0) {
+    if (range < kStill && IsRecorded(recording, model.tree, c)) {
       still.push_back(name);
     }
   }

@@ -13,6 +13,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/measurement/recorded_joints.hpp"
 #include "elastocal/robot/linkage.hpp"
 #include "elastocal/robot/move_motors.hpp"
 #include "elastocal/screening/positions_by_markers.hpp"
@@ -202,7 +203,11 @@ class SuspicionSearch {
            Range(Logged(c, postures)) >= LeastRange(c);
   }
 
+  /// A motor is not recorded where its joints are not; they are then no entries.
+  bool IsRecorded(int c) const { return IsMotor(c) || elastocal::IsRecorded(recording_, tree_, c); }
+
   void TryExchange(int a, int b, const std::vector<int>& postures) {
+    if (!IsRecorded(a) || !IsRecorded(b)) return;
     if (EntrySlides(a) != EntrySlides(b) || IsMotor(a) != IsMotor(b)) return;
     if (IsMotor(a) && MotorOf(a).first != MotorOf(b).first) return;
     const auto off = [&](int c, int by) {
@@ -381,8 +386,10 @@ std::string DescribeSuspicion(const LogSuspicion& suspicion, const RobotTree& tr
               ": their positions are exchanged";
       break;
     case LogContradiction::kFrozen:
-      text += ": its positions are frozen, while it moved, in " +
-              std::to_string(suspicion.postures.size()) + " postures";
+      text += suspicion.linkage >= 0 || IsRecorded(recording, tree, suspicion.coordinate)
+                  ? ": its positions are frozen, while it moved, in "
+                  : " is not recorded, and the project says that it stood still: it moved in ";
+      text += std::to_string(suspicion.postures.size()) + " postures";
       break;
   }
   if (recording.trials.empty()) return text;

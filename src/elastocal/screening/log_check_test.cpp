@@ -198,6 +198,18 @@ TEST_F(LogCheckTest, AJointThatIsLoggedInOnePlaceThroughoutIsTold) {
 }
 
 // It rests while others move, and the markers show it elsewhere, but in one place.
+TEST_F(LogCheckTest, AJointThatIsNotRecordedAndMovesIsSaidToBeNotRecorded) {
+  Recording changed = recording_;
+  changed.q.col(Coordinate("right_4")).setZero();
+  changed.joints_not_recorded = {"right_4"};
+  EXPECT_EQ(First(changed),
+            "right_4 is not recorded, and the project says that it stood still: it moved in " +
+                std::to_string(changed.posture_count()) + " postures in trial a, b");
+  for (const LogSuspicion& one : FindLogSuspicions(robot_.model, changed)) {
+    EXPECT_EQ(one.kind, LogContradiction::kFrozen) << "there is no column to be exchanged";
+  }
+}
+
 TEST_F(LogCheckTest, AJointAtRestIsNotFrozen) {
   Recording rests = recording_;
   auto right_4 = rests.q.col(Coordinate("right_4")).segment(kPlayed + 5, 6);
