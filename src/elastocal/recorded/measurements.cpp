@@ -59,13 +59,15 @@ std::vector<std::optional<Transform>> TrueWaists(const std::vector<fs::path>& fo
                                                  const Project& project,
                                                  const Recording& recording) {
   std::vector<std::optional<Transform>> waists(recording.posture_count());
-  for (const fs::path& folder : folders) {
-    for (const TrialFiles& files : ReadExperiment(folder, project).trials) {
+  for (std::size_t session = 0; session < folders.size(); ++session) {
+    for (const TrialFiles& files : ReadExperiment(folders[session], project).trials) {
       if (files.truth.empty()) continue;
       const WaistTruth truth = ReadWaistTruth(files.truth);
       for (int i = 0; i < recording.posture_count(); ++i) {
-        const std::string& name = recording.trials[recording.trial[i]].name;
-        const bool same = folders.size() == 1 ? name == files.name : name.ends_with(files.name);
+        const Trial& trial = recording.trials[recording.trial[i]];
+        const bool same = folders.size() == 1 ? trial.name == files.name
+                                              : trial.session == static_cast<int>(session) &&
+                                                    trial.name.ends_with("/" + files.name);
         if (!same || truth.time_s.size() == 0) continue;
         Eigen::Index nearest = 0;
         (truth.time_s.array() - recording.time_s[i]).abs().minCoeff(&nearest);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -123,6 +124,25 @@ TEST_F(MeasurementsTest, EachFolderIsASession) {
   ExpectInputError([&] { DealFolds(both, {.folds = 3, .unit = FoldUnit::kSession}); },
                    {"2 to 2 folds", "recording folders", "not 3"});
   EXPECT_NO_THROW(DealFolds(both, {.folds = 3, .unit = FoldUnit::kTrial}));
+}
+
+// Two days of one robot have trials of the same names.
+TEST_F(MeasurementsTest, TheTruthOfATrialIsThatOfItsOwnFolder) {
+  const ScratchFolder other;
+  std::filesystem::copy(folder_.path(), other.path(), std::filesystem::copy_options::recursive);
+  for (const ScratchFolder* folder : {&other, &std::as_const(folder_)}) {
+    folder->Write("experiment.yaml",
+                  "trials: [{name: check, chain: left_leg, support: [right_sole], markers: a.tsv, "
+                  "joints: a.csv, truth: waist.csv}]");
+    folder->Write("waist.csv", std::string("t,x,y,z,qw,qx,qy,qz\n0,") +
+                                   (folder == &other ? "2" : "1") + ",0,0,1,0,0,0\n");
+  }
+  const Measurements both = ReadMeasurements(project_, {folder_.path(), other.path()});
+  ASSERT_EQ(both.calibration_truth.size(), 16u);
+  for (std::size_t i = 0; i < 16; ++i) {
+    ASSERT_TRUE(both.calibration_truth[i]);
+    EXPECT_EQ(both.calibration_truth[i]->translation().x(), i < 8 ? 1.0 : 2.0);
+  }
 }
 
 TEST_F(MeasurementsTest, ListsEveryFileThatIsRead) {
