@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "tests/standing_robot.hpp"
 
@@ -28,7 +29,10 @@ class RecordingsApart : public testing::Test {
 
   /// Of both together, the second robot having the errors `second`.
   std::string Said(const Eigen::VectorXd& second) const {
-    const Recording both = JoinTrials(Record(truth_, "monday", 0), Record(second, "friday", 1));
+    return SaidOf(JoinTrials(Record(truth_, "monday", 0), Record(second, "friday", 1)));
+  }
+
+  std::string SaidOf(const Recording& both) const {
     const RecordedModel robot{robot_.model, robot_.base};
     const CalibrationResult fit =
         Calibrate(robot.model, both, robot.base, ModelKinds(robot.model).back(), {});
@@ -48,6 +52,21 @@ TEST_F(RecordingsApart, AnotherRobotIsNotTheSame) {
   EXPECT_EQ(said.find("the recordings are not of one robot in one state"), 0u) << said;
   EXPECT_NE(said.find("each by itself monday "), std::string::npos) << said;
   EXPECT_NE(said.find(" mm, friday "), std::string::npos) << said;
+}
+
+// The left leg's trial alone, in the folder of the others.
+TEST_F(RecordingsApart, ATrialOfAnotherRobotIsNamed) {
+  const Recording own = Record(truth_, "monday", 0), foreign = Record(other_, "monday", 0);
+  Recording mixed = own;
+  for (int i = 0; i < mixed.posture_count(); ++i) {
+    if (mixed.trials[Size(mixed.trial[Size(i)])].name != "monday/leg_left") continue;
+    mixed.q.row(i) = foreign.q.row(i);
+    mixed.markers.row(i) = foreign.markers.row(i);
+    mixed.torques.row(i) = foreign.torques.row(i);
+  }
+  EXPECT_EQ(SaidOf(own), "");
+  const std::string said = SaidOf(mixed);
+  EXPECT_EQ(said.find("trial monday/leg_left contradicts the others"), 0u) << said;
 }
 
 TEST_F(RecordingsApart, MarkersThatWereGluedOnAnewAreNoOtherRobot) {

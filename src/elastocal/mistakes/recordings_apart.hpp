@@ -9,14 +9,21 @@
 
 namespace elastocal {
 
-/// Recording folders that were given together and that no one robot explains, in words; empty where
-/// there is one folder, or where one robot explains them.
+/// Recordings that no one robot explains, in words; empty where one does, and for tables. Looked
+/// for only where much more is left than cameras displace markers by.
 ///
-/// Each folder is fitted by itself. They are apart if that leaves less than half of the error of
-/// `together` (rms distance of the markers), and 0.2 mm less. Then one robot whose markers are all
-/// elsewhere in each folder is fitted as well: where it leaves hardly more than the fits apart,
-/// markers were glued on anew between the folders; else the robots differ, or one robot was
-/// changed. `recording`: that of `together`.
+/// **Folders** that were given together. Each is fitted by itself. They are apart if that leaves
+/// less than half of the error of `together` (rms distance of the markers), and 0.2 mm less. Then
+/// one robot whose markers are all elsewhere in each folder is fitted as well: where it leaves
+/// hardly more than the fits apart, markers were glued on anew between the folders; else the robots
+/// differ, or one robot was changed.
+///
+/// **One trial.** It is apart if a fit without it leaves less than half of that error, and a fit to
+/// it alone less than half of what `together` leaves there: then something in it is consistent, and
+/// another robot, or its state on another day. What only this trial exercises, and no model
+/// explains, does not fit alone.
+///
+/// `recording`: that of `together`.
 std::string FindRecordingsApart(const Project& project, const RecordedModel& robot,
                                 const Recording& recording, const CalibrationResult& together);
 
