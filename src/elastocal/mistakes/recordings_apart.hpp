@@ -18,10 +18,7 @@ namespace elastocal {
 /// hardly more than the fits apart, markers were glued on anew between the folders; else the robots
 /// differ, or one robot was changed.
 ///
-/// **One trial.** It is apart if a fit without it leaves less than half of that error, and a fit to
-/// it alone less than half of what `together` leaves there: then something in it is consistent, and
-/// another robot, or its state on another day. What only this trial exercises, and no model
-/// explains, does not fit alone.
+/// **Trials** of a folder: see FindTrialsApart.
 ///
 /// `recording`: that of `together`.
 std::string FindRecordingsApart(const Project& project, const RecordedModel& robot,

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/recorded/recorded_model.hpp"
+
+namespace elastocal {
+
+/// A part of a recording: a trial, or what is from one of the folders given.
+struct PartOfRecording {
+  std::string name;
+  std::vector<int> postures;
+};
+
+/// Root mean square over the markers of all parts, of those of each part (`errors`), m.
+double ErrorOverParts(const Recording& recording, const std::vector<PartOfRecording>& parts,
+                      const std::vector<double>& errors);
+
+/// Whether parts contradict each other: robots of their own leave less than half of the error that
+/// one robot leaves, and 0.2 mm less. Both m.
+bool AreApart(double error_apart, double error_together);
+
+/// Trials that no one robot explains, in words; empty where one does. They contradict each other if
+/// robots of their own leave far less (AreApart), as large as it would be without the freedom of
+/// these fits: what a trial exercises and no model explains does not fit alone either. Sets of
+/// trials that one robot explains (what is left is nearer to the error of all apart than to that of
+/// all together, by their ratio) are put together trial by trial. `recording`: that of `together`,
+/// which leaves the error `left`, m.
+std::string FindTrialsApart(const RecordedModel& robot, const Recording& recording,
+                            const CalibrationResult& together, const CalibrationOptions& options,
+                            double left);
+
+}  // namespace elastocal
