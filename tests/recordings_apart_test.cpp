@@ -3,12 +3,16 @@
 #include "elastocal/mistakes/recordings_apart.hpp"
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/random.hpp"
+#include "elastocal/mistakes/find_faults.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "tests/standing_robot.hpp"
 
@@ -34,11 +38,32 @@ class RecordingsApart : public testing::Test {
     return SaidOf(JoinTrials(Record(truth_, "monday", 0), Record(second, "friday", 1)));
   }
 
-  std::string SaidOf(const Recording& both) const {
-    const RecordedModel robot{robot_.model, robot_.base};
-    const CalibrationResult fit =
-        Calibrate(robot.model, both, robot.base, ModelKinds(robot.model).back(), {});
-    return FindRecordingsApart(robot_.project, robot, both, fit);
+  CalibrationResult FitOf(const Recording& recording) const {
+    return Calibrate(robot_.model, recording, robot_.base, ModelKinds(robot_.model).back(), {});
+  }
+  double LeftOf(const Recording& recording) const {
+    return MarkerError(FitOf(recording), recording, {});
+  }
+
+  std::string SaidOf(const Recording& recording) const {
+    return FindRecordingsApart(robot_.project, {robot_.model, robot_.base}, recording,
+                               FitOf(recording));
+  }
+
+  /// What calibrate says of it.
+  std::string FaultsOf(const Recording& recording) const {
+    ModelComparison comparison;
+    const CalibrationResult fit = FitOf(recording);
+    comparison.kinds = {fit.kind};
+    comparison.results[static_cast<std::size_t>(fit.kind)] = fit;
+    Measurements measured;
+    measured.calibration = recording;
+    std::string all;
+    for (const std::string& fault : FindFaults(
+             robot_.project, {}, measured, {robot_.model, robot_.base}, recording, comparison)) {
+      all += fault + "\n";
+    }
+    return all;
   }
 
   int marker_parameters() const { return 3 * robot_.model.marker_count(); }
@@ -56,21 +81,54 @@ TEST_F(RecordingsApart, AnotherRobotIsNotTheSame) {
   EXPECT_NE(said.find(" mm, friday "), std::string::npos) << said;
 }
 
+// What no robot of the model explains is no other robot, however much it is.
+TEST_F(RecordingsApart, ErrorsThatAPostureSharesAreNoOtherRobot) {
+  Recording recording = Record(truth_, "monday", 0);
+  Random random(3);
+  const std::vector<Link>& links = robot_.model.tree.links;
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    std::map<int, Eigen::Vector3d> of_body;
+    for (int m = 0; m < recording.marker_count(); ++m) {
+      const int body = links[Size(robot_.model.markers[Size(m)].link)].body;
+      if (!of_body.contains(body)) of_body[body] = random.NormalVector(3, 1.5e-3);
+      recording.markers.block<1, 3>(i, 3 * m) += of_body[body].transpose();
+    }
+  }
+  EXPECT_TRUE(LeavesMoreThanCameras(FitOf(recording), LeftOf(recording)));
+  EXPECT_EQ(SaidOf(recording), "");
+}
+
+TEST_F(RecordingsApart, AnEncoderOffCentreIsNoOtherRobot) {
+  Recording recording = Record(truth_, "monday", 0);
+  for (const char* name : {"arm_left_2_joint", "arm_right_4_joint", "leg_left_3_joint"}) {
+    const Joint& joint = robot_.project.tree.joints[FindJoint(robot_.project.tree, name)];
+    auto q = recording.q.col(joint.coordinate);
+    q.array() += 0.015 * (3.0 * q.array()).sin();
+  }
+  EXPECT_TRUE(LeavesMoreThanCameras(FitOf(recording), LeftOf(recording)));
+  EXPECT_EQ(SaidOf(recording), "");
+}
+
 TEST_F(RecordingsApart, TrialsOfAnotherRobotAreNamed) {
   const Recording own = Record(truth_, "monday", 0), foreign = Record(other_, "monday", 0);
-  const auto mixed_with = [&](const std::vector<std::string>& trials) {
-    Recording mixed = own;
-    for (int i = 0; i < mixed.posture_count(); ++i) {
-      if (std::ranges::count(trials, mixed.trials[Size(mixed.trial[Size(i)])].name) == 0) continue;
-      mixed.q.row(i) = foreign.q.row(i);
-      mixed.markers.row(i) = foreign.markers.row(i);
-      mixed.torques.row(i) = foreign.torques.row(i);
+  const auto mixed = [&](const std::vector<std::string>& trials) {
+    Recording of_both = own;
+    for (int i = 0; i < own.posture_count(); ++i) {
+      if (std::ranges::count(trials, own.trials[Size(own.trial[Size(i)])].name) == 0) continue;
+      of_both.q.row(i) = foreign.q.row(i);
+      of_both.markers.row(i) = foreign.markers.row(i);
+      of_both.torques.row(i) = foreign.torques.row(i);
     }
-    return SaidOf(mixed);
+    return of_both;
+  };
+  const auto mixed_with = [&](const std::vector<std::string>& trials) {
+    return SaidOf(mixed(trials));
   };
   EXPECT_EQ(mixed_with({}), "");
   const std::string one = mixed_with({"monday/leg_left"});
   EXPECT_NE(one.find(", another one monday/leg_left ("), std::string::npos) << one;
+  EXPECT_NE(FaultsOf(mixed({"monday/leg_left"})).find(one), std::string::npos)
+      << "not asked for by calibrate";
   const std::string two = mixed_with({"monday/torso_arm_left", "monday/torso_arm_right"});
   EXPECT_NE(two.find("monday/torso_arm_left, monday/torso_arm_right ("), std::string::npos) << two;
   EXPECT_NE(two.find("monday/leg_left, monday/leg_right ("), std::string::npos) << two;

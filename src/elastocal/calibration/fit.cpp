@@ -29,7 +29,7 @@ constexpr int kMaxSolves = 6;  // for the last digits, where the iterations of o
 constexpr int kMaxPolishing = 20;
 constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
 constexpr double kSlow = 0.3;             // of the step before
-constexpr double kWorse = 2.0;            // times the cost before: the steps lead away
+constexpr double kWorse = 2.0;            // times the least cost: the steps lead away
 
 /// Whether any elastic parameter is estimated or known: else loads do not matter.
 bool IsElasticFit(const ErrorModel& model, const std::vector<int>& free,
@@ -185,7 +185,8 @@ void FollowLoads(const FitProblem& problem, const Selection& selection,
   Eigen::VectorXd x = body.Start();
   body.Evaluate(x, true);
   std::optional<NormalEquations> equations(std::in_place, body);
-  double before = std::numeric_limits<double>::infinity(), cost = CostOf(body);
+  double before = std::numeric_limits<double>::infinity();
+  double cost = CostOf(body), least = cost;
   for (int round = 0; round < kMaxPolishing; ++round) {
     const Eigen::VectorXd step =
         BoundedStep(equations->information(), equations->gradient(), x(equations->unknowns()),
@@ -197,9 +198,10 @@ void FollowLoads(const FitProblem& problem, const Selection& selection,
     body.LoadsFollow(next);
     body.Evaluate(next, true);
     const double found = CostOf(body);
-    if (!(found < kWorse * cost)) break;
+    if (!(found < kWorse * least)) break;
     x = next;
     cost = found;
+    least = std::min(least, cost);
     const double change = step.cwiseAbs().maxCoeff();
     if (change < kLoadTolerance) break;
     if (change < kSlow * before) {

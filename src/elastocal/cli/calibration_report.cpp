@@ -202,8 +202,7 @@ std::string FramesText(const CalibrationRun& run) {
   }
   return "\nError to be expected (sd) of the URDF between the root link and the ends of limbs, "
          "springs aside.\nMarkers that are fitted do not show it; it is the smaller, the more of "
-         "their "
-         "places are measured (--marker-places).\n" +
+         "their places are measured (--marker-places).\n" +
          table.Render();
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/measurement/recorded_joints.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -286,8 +287,7 @@ std::vector<std::string> LimitWarnings(const Recording& recording, const RobotTr
   std::vector<std::string> warnings;
   for (int c = 0; c < tree.coordinate_count(); ++c) {
     const Joint& joint = tree.joints[tree.coordinate_joint[c]];
-    const auto& absent = recording.joints_not_recorded;
-    if (std::find(absent.begin(), absent.end(), joint.name) != absent.end()) continue;
+    if (!IsRecorded(recording, tree, c)) continue;
     const std::string warning = LimitWarning(recording, joint, c);
     if (!warning.empty()) warnings.push_back(warning);
   }

@@ -198,7 +198,7 @@ class FaultsInTurn {
     faults = OfCoarsePositions();
     if (!faults.empty()) return faults;
     Look();
-    if (!few_->complete) {
+    if (!few_->complete && LeavesMoreThanCameras(fit(), left_)) {
       const std::string motion = FindUnrecordedMotion(project_, robot_, recording_, fit());
       if (!motion.empty()) return {motion};
       const std::string apart = FindRecordingsApart(project_, robot_, recording_, fit());

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/screening/camera_scale.hpp"
 
 namespace elastocal {
@@ -18,8 +19,7 @@ std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
   double least = 1.0, most = -1.0, sd = 0.0;
   std::string joints;
   for (const RecordingFault& fault : faults) {
-    const Joint& joint =
-        tree.joints[Size(tree.coordinate_joint[Size(std::max(0, fault.coordinate))])];
+    const Joint& joint = JointOfCoordinate(tree, std::max(0, fault.coordinate));
     if (fault.kind != FaultKind::kJointGain || fault.coordinate < 0 || fault.trial >= 0 ||
         joint.type != JointType::kPrismatic) {
       return "";

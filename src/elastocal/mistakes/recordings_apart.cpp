@@ -35,25 +35,11 @@ std::vector<PartOfRecording> FoldersOf(const Recording& recording) {
   return folders;
 }
 
-/// Distance by which the cameras displace a marker, rms of the best group, m. What contradicts
-/// itself passes for noise: it is no more than usual cameras have.
+/// Distance by which the cameras displace a marker, rms of the best group, m, but no more than that
+/// of usual cameras: what contradicts itself passes for noise.
 double ScatterOfMarkers(const Noise& noise) {
   const double sd = noise.sd.col(static_cast<int>(NoiseSource::kMarker)).minCoeff();
   return std::sqrt(3.0) * std::min(sd, kUsualNoise);
-}
-
-/// rms distance of the markers of each folder from a robot of its own, m.
-std::vector<double> ErrorsApart(const RecordedModel& robot, const Recording& recording,
-                                const CalibrationResult& together,
-                                const CalibrationOptions& options,
-                                const std::vector<PartOfRecording>& folders) {
-  std::vector<double> errors;
-  for (const PartOfRecording& folder : folders) {
-    const Recording part = SelectPostures(recording, folder.postures);
-    errors.push_back(
-        FitError(Calibrate(robot.model, part, robot.base, together.kind, options), part, options));
-  }
-  return errors;
 }
 
 /// Gives what the folder shows of each marker, as far as others show it too, to a marker of its
@@ -80,9 +66,13 @@ double ErrorWithOwnMarkers(const Project& project, const CalibrationResult& toge
                            Recording recording, const std::vector<PartOfRecording>& folders) {
   ErrorModel model = together.model;
   for (std::size_t k = 1; k < folders.size(); ++k) GiveOwnMarkers(folders[k], model, recording);
-  const BaseParameters base = FindBaseOf(project, model, recording);
-  return FitError(Calibrate(model, recording, base, together.kind, project.calibration), recording,
-                  project.calibration);
+  try {
+    const BaseParameters base = FindBaseOf(project, model, recording);
+    return FitError(Calibrate(model, recording, base, together.kind, project.calibration),
+                    recording, project.calibration);
+  } catch (const InputError&) {  // so many markers, so few equations
+    return std::numeric_limits<double>::infinity();
+  }
 }
 
 std::string DescribeFolders(const Project& project, const Recording& recording,
@@ -110,12 +100,22 @@ std::string DescribeFolders(const Project& project, const Recording& recording,
 }
 
 std::string FindFoldersApart(const Project& project, const RecordedModel& robot,
-                             const Recording& recording, const CalibrationResult& together,
-                             double left) {
-  const std::vector<PartOfRecording> folders = FoldersOf(recording);
+                             const Recording& recording, const CalibrationResult& together) {
+  std::vector<PartOfRecording> folders = FoldersOf(recording);
+  std::vector<double> errors;
+  std::erase_if(folders, [&](const PartOfRecording& folder) {
+    const double error = ErrorAlone(robot, SelectPostures(recording, folder.postures),
+                                    together.kind, project.calibration);
+    if (std::isfinite(error)) errors.push_back(error);
+    return !std::isfinite(error);
+  });
   if (folders.size() < 2) return "";
-  const std::vector<double> errors =
-      ErrorsApart(robot, recording, together, project.calibration, folders);
+  std::vector<int> judged;
+  for (const PartOfRecording& folder : folders) {
+    judged.insert(judged.end(), folder.postures.begin(), folder.postures.end());
+  }
+  std::ranges::sort(judged);
+  const double left = MarkerError(together, SelectPostures(recording, judged), project.calibration);
   const double apart = ErrorOverParts(recording, folders, errors);
   if (!AreApart(apart, left)) return "";
   return DescribeFolders(project, recording, together, folders, errors, left, apart);
@@ -123,17 +123,16 @@ std::string FindFoldersApart(const Project& project, const RecordedModel& robot,
 
 }  // namespace
 
+bool LeavesMoreThanCameras(const CalibrationResult& result, double left) {
+  return left > kFarAbove * ScatterOfMarkers(result.noise);
+}
+
 std::string FindRecordingsApart(const Project& project, const RecordedModel& robot,
                                 const Recording& recording, const CalibrationResult& together) {
   if (recording.trials.empty()) return "";
-  const double left = MarkerError(together, recording, project.calibration);
-  if (!(left > kFarAbove * ScatterOfMarkers(together.noise))) return "";
-  try {
-    const std::string folders = FindFoldersApart(project, robot, recording, together, left);
-    if (!folders.empty()) return folders;
-  } catch (const InputError&) {  // a folder has too few equations
-  }
-  return FindTrialsApart(robot, recording, together, project.calibration, left);
+  const std::string folders = FindFoldersApart(project, robot, recording, together);
+  if (!folders.empty()) return folders;
+  return FindTrialsApart(robot, recording, together, project.calibration);
 }
 
 }  // namespace elastocal

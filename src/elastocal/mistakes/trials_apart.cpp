@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@ namespace {
 
 constexpr double kLeftApart = 0.5;     // of the error of one robot
 constexpr double kLeastGain = 0.2e-3;  // m, of that error
+constexpr std::size_t kMostTrials = 12;
 
 double CountSeen(const Recording& recording, const std::vector<int>& postures) {
   double seen = 0.0;
@@ -37,17 +39,31 @@ std::vector<PartOfRecording> TrialsOf(const Recording& recording) {
 }
 
 /// By what a fit of so many parameters makes residuals smaller than errors are. Of a body its place
-/// and attitude are told; infinite where the parameters are as many.
+/// and attitude are told in each posture, and of its markers no more can be fitted than these;
+/// infinite where the parameters are as many.
 double OfFreedom(const CalibrationResult& fit, const Recording& part) {
-  const Selection all = SelectAll(fit.model, part);
   double rows = -6.0 * part.posture_count();  // the waist's
-  for (const BodyObservation& body : all.bodies) {
-    rows += static_cast<double>(std::min<Eigen::Index>(6, body.size()));
+  std::map<int, double> of_markers;           // by body
+  for (const BodyObservation& body : SelectAll(fit.model, part).bodies) {
+    const auto told = static_cast<double>(std::min<Eigen::Index>(6, body.size()));
+    rows += told;
+    of_markers[body.body] = std::max(of_markers[body.body], told);
   }
-  const auto told =
-      static_cast<double>(std::ranges::count(fit.status, ParameterStatus::kEstimated));
-  return rows > told ? std::sqrt(rows / (rows - told)) : std::numeric_limits<double>::infinity();
+  double fitted = 0.0;
+  for (const auto& [body, told] : of_markers) fitted += told;
+  for (int i = 0; i < fit.model.parameter_count(); ++i) {
+    const bool told = fit.status[Size(i)] == ParameterStatus::kEstimated;
+    if (told && !IsExternal(fit.model.parameters[Size(i)].kind)) fitted += 1.0;
+  }
+  return rows > fitted ? std::sqrt(rows / (rows - fitted))
+                       : std::numeric_limits<double>::infinity();
 }
+
+/// A set of trials, and the rms distance of their markers from one robot, m.
+struct OneRobot {
+  std::vector<PartOfRecording> trials;
+  double error = 0.0;
+};
 
 /// Trials by themselves and together.
 class TrialsTogether {
@@ -57,97 +73,83 @@ class TrialsTogether {
       : robot_(robot), recording_(recording), kind_(together.kind), options_(options) {
     for (const PartOfRecording& trial : TrialsOf(recording)) {
       if (trial.postures.empty()) continue;
-      const double alone = ErrorAlone(trial);
-      if (std::isfinite(alone)) trials_.push_back({trial, alone});
+      const double error =
+          ErrorAlone(robot, SelectPostures(recording, trial.postures), kind_, options);
+      if (!std::isfinite(error)) continue;
+      trials_.push_back(trial);
+      errors_.push_back(error);
     }
+    if (trials_.size() < 2) return;
+    const Recording judged = SelectPostures(recording, PosturesOf(trials_));
+    left_ = MarkerError(together, judged, options);
+    apart_ = ErrorOverParts(recording, trials_, errors_);
   }
 
-  /// rms distance of the markers from a robot of its own for each trial, m.
-  double ErrorApart() const { return ErrorApart(All()); }
+  /// rms distance of the markers from one robot, and from a robot of its own for each trial, m.
+  double left() const { return left_; }
+  double apart() const { return apart_; }
 
   /// Sets of trials that one robot explains, but for an error of `most`, m; each as large as the
-  /// order of the trials makes it.
-  std::vector<std::vector<std::size_t>> Consistent(double most) const {
-    std::vector<std::vector<std::size_t>> sets;
-    std::vector<std::size_t> open = All();
+  /// order of the trials makes it. The largest first.
+  std::vector<OneRobot> Sets(double most) const {
+    std::vector<OneRobot> sets;
+    std::vector<std::size_t> open(trials_.size());
+    std::iota(open.begin(), open.end(), std::size_t{0});
     while (!open.empty()) {
-      std::vector<std::size_t> set, others;
-      for (const std::size_t trial : open) {
-        set.push_back(trial);
-        if (set.size() == 1 || ErrorOf(set) < most) continue;
-        set.pop_back();
-        others.push_back(trial);
+      OneRobot set{{trials_[open.front()]}, errors_[open.front()]};
+      std::vector<std::size_t> others;
+      for (std::size_t k = 1; k < open.size(); ++k) {
+        std::vector<PartOfRecording> with = set.trials;
+        with.push_back(trials_[open[k]]);
+        const double error = ErrorOf(with);
+        if (error < most) {
+          set = {with, error};
+        } else {
+          others.push_back(open[k]);
+        }
       }
-      sets.push_back(set);
+      sets.push_back(std::move(set));
       open = others;
     }
-    std::ranges::stable_sort(sets,
-                             [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    std::ranges::stable_sort(sets, [](const OneRobot& a, const OneRobot& b) {
+      return a.trials.size() > b.trials.size();
+    });
     return sets;
   }
 
-  /// rms distance of the markers from one robot for all these trials, m.
-  double ErrorOf(const std::vector<std::size_t>& set) const {
+ private:
+  static std::vector<int> PosturesOf(const std::vector<PartOfRecording>& trials) {
     std::vector<int> postures;
-    for (const std::size_t k : set) {
-      postures.insert(postures.end(), trials_[k].part.postures.begin(),
-                      trials_[k].part.postures.end());
+    for (const PartOfRecording& trial : trials) {
+      postures.insert(postures.end(), trial.postures.begin(), trial.postures.end());
     }
     std::ranges::sort(postures);
-    const Recording part = SelectPostures(recording_, postures);
-    return FitError(FitOf(part), part, options_);
+    return postures;
   }
 
-  std::string Names(const std::vector<std::size_t>& set) const {
-    std::string names;
-    for (const std::size_t k : set) names += (names.empty() ? "" : ", ") + trials_[k].part.name;
-    return names;
-  }
-
- private:
-  struct TrialAlone {
-    PartOfRecording part;
-    double error = 0.0;
-  };
-
-  std::vector<std::size_t> All() const {
-    std::vector<std::size_t> all(trials_.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    return all;
-  }
-
-  CalibrationResult FitOf(const Recording& part) const {
-    return Calibrate(robot_.model, part, robot_.base, kind_, options_);
-  }
-
-  /// As large as the errors are that a fit of so many parameters leaves; infinite where the trial
-  /// has too few equations.
-  double ErrorAlone(const PartOfRecording& trial) const {
-    const Recording part = SelectPostures(recording_, trial.postures);
+  double ErrorOf(const std::vector<PartOfRecording>& trials) const {
+    const Recording part = SelectPostures(recording_, PosturesOf(trials));
     try {
-      const CalibrationResult fit = FitOf(part);
-      return FitError(fit, part, options_) * OfFreedom(fit, part);
+      return FitError(Calibrate(robot_.model, part, robot_.base, kind_, options_), part, options_);
     } catch (const InputError&) {
       return std::numeric_limits<double>::infinity();
     }
-  }
-
-  double ErrorApart(const std::vector<std::size_t>& set) const {
-    std::vector<PartOfRecording> parts;
-    std::vector<double> errors;
-    for (const std::size_t k : set) {
-      parts.push_back(trials_[k].part);
-      errors.push_back(trials_[k].error);
-    }
-    return ErrorOverParts(recording_, parts, errors);
   }
 
   const RecordedModel& robot_;
   const Recording& recording_;
   ModelKind kind_;
   const CalibrationOptions& options_;
-  std::vector<TrialAlone> trials_;
+  std::vector<PartOfRecording> trials_;
+  std::vector<double> errors_;  // of each by itself
+  double left_ = 0.0, apart_ = 0.0;
 };
+
+std::string NamesOf(const std::vector<PartOfRecording>& trials) {
+  std::string names;
+  for (const PartOfRecording& trial : trials) names += (names.empty() ? "" : ", ") + trial.name;
+  return names;
+}
 
 }  // namespace
 
@@ -166,24 +168,33 @@ bool AreApart(double error_apart, double error_together) {
   return error_apart < kLeftApart * error_together && error_apart < error_together - kLeastGain;
 }
 
+double ErrorAlone(const RecordedModel& robot, const Recording& part, ModelKind kind,
+                  const CalibrationOptions& options) {
+  try {
+    const CalibrationResult fit = Calibrate(robot.model, part, robot.base, kind, options);
+    return FitError(fit, part, options) * OfFreedom(fit, part);
+  } catch (const InputError&) {
+    return std::numeric_limits<double>::infinity();
+  }
+}
+
 std::string FindTrialsApart(const RecordedModel& robot, const Recording& recording,
-                            const CalibrationResult& together, const CalibrationOptions& options,
-                            double left) {
+                            const CalibrationResult& together, const CalibrationOptions& options) {
+  if (recording.trials.size() > kMostTrials) return "";
   const TrialsTogether trials(robot, recording, together, options);
-  const double apart = trials.ErrorApart();
-  if (!AreApart(apart, left)) return "";
-  const std::vector<std::vector<std::size_t>> sets = trials.Consistent(std::sqrt(apart * left));
+  if (!AreApart(trials.apart(), trials.left())) return "";
+  const std::vector<OneRobot> sets = trials.Sets(std::sqrt(trials.apart() * trials.left()));
   if (sets.size() < 2) return "";
   std::string explained;
   for (std::size_t k = 0; k < sets.size(); ++k) {
-    explained += fmt::format("{}{} ({:.3g} mm)", k == 0 ? "" : ", another one ",
-                             trials.Names(sets[k]), 1e3 * trials.ErrorOf(sets[k]));
+    explained += fmt::format("{}{} ({:.3g} mm)", k == 0 ? "" : "; another one ",
+                             NamesOf(sets[k].trials), 1e3 * sets[k].error);
   }
   return fmt::format(
       "trials contradict each other: all together leave an error of {:.3g} mm, each by itself "
       "{:.3g} mm. One robot explains {}. Are they of different robots or days, or was the robot "
-      "changed in between? Leave one set out, or measure it again",
-      1e3 * left, 1e3 * apart, explained);
+      "changed in between? Leave the foreign ones out, or measure them again",
+      1e3 * trials.left(), 1e3 * trials.apart(), explained);
 }
 
 }  // namespace elastocal

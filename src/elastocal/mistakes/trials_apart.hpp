@@ -19,18 +19,22 @@ struct PartOfRecording {
 double ErrorOverParts(const Recording& recording, const std::vector<PartOfRecording>& parts,
                       const std::vector<double>& errors);
 
+/// rms distance of the markers of a recording, of which this is a part, from a robot of its own, m,
+/// as large as it would be if the fit had no freedom; infinite where it has too few equations.
+double ErrorAlone(const RecordedModel& robot, const Recording& part, ModelKind kind,
+                  const CalibrationOptions& options);
+
 /// Whether parts contradict each other: robots of their own leave less than half of the error that
 /// one robot leaves, and 0.2 mm less. Both m.
 bool AreApart(double error_apart, double error_together);
 
 /// Trials that no one robot explains, in words; empty where one does. They contradict each other if
-/// robots of their own leave far less (AreApart), as large as it would be without the freedom of
-/// these fits: what a trial exercises and no model explains does not fit alone either. Sets of
+/// robots of their own leave far less (AreApart). What a trial exercises and no model
+/// explains seldom fits alone; an error that is the same throughout a trial does. Sets of
 /// trials that one robot explains (what is left is nearer to the error of all apart than to that of
-/// all together, by their ratio) are put together trial by trial. `recording`: that of `together`,
-/// which leaves the error `left`, m.
+/// all together, by their ratio) are put together trial by trial. Trials that have too few
+/// equations are not judged; nothing is where more than 12 are. `recording`: that of `together`.
 std::string FindTrialsApart(const RecordedModel& robot, const Recording& recording,
-                            const CalibrationResult& together, const CalibrationOptions& options,
-                            double left);
+                            const CalibrationResult& together, const CalibrationOptions& options);
 
 }  // namespace elastocal

@@ -27,6 +27,7 @@ constexpr double kMostTurned = M_PI, kMostSlid = 1.0;  // of a joint without lim
 constexpr int kPlaces = 72;                            // of a joint, to begin with
 constexpr double kShareOfPlaces = 0.25;                // of the distance of two of these
 constexpr int kStepsToNearest = 3;
+constexpr double kLeastCurvature = 0.01;  // of the largest: the joint is shown
 constexpr int kFits = 2;  // the first one has the markers where a joint at rest would
 
 bool Slides(const RobotTree& tree, int coordinate) {
@@ -47,47 +48,70 @@ std::vector<int> NotRecorded(const ErrorModel& model, const Recording& recording
   return coordinates;
 }
 
-/// Positions of a coordinate over all that its joint can do.
+/// Positions of a coordinate over all that its joint can do; empty where that is nothing.
 Eigen::VectorXd Places(const RobotTree& tree, int coordinate) {
-  const Joint& joint = JointOfCoordinate(tree, coordinate);
+  const JointLimits& limits = JointOfCoordinate(tree, coordinate).limits;
   const double most = Slides(tree, coordinate) ? kMostSlid : kMostTurned;
-  return Eigen::VectorXd::LinSpaced(kPlaces, std::max(-most, joint.limits.lower),
-                                    std::min(most, joint.limits.upper));
+  const double lower = std::max(-most, limits.lower), upper = std::min(most, limits.upper);
+  if (!(lower < upper)) return {};
+  return Eigen::VectorXd::LinSpaced(kPlaces, lower, upper);
 }
 
 /// The recording with the coordinate in each posture where it brings the markers nearest.
-Recording Nearest(const CalibrationResult& result, const Recording& recording, int coordinate,
-                  const CalibrationOptions& options) {
-  const Eigen::VectorXd places = Places(result.model.tree, coordinate);
-  Recording best = recording, tried = recording;
-  const Eigen::VectorXd given = SquaresByPosture(result, best, options);
-  Eigen::VectorXd least = given;
-  const auto take = [&](const Recording& moved) {
-    const Eigen::VectorXd squares = SquaresByPosture(result, moved, options);
+class NearestPositions {
+ public:
+  NearestPositions(const CalibrationResult& result, const Recording& recording, int coordinate,
+                   const CalibrationOptions& options)
+      : result_(result),
+        options_(options),
+        coordinate_(coordinate),
+        given_(SquaresByPosture(result, recording, options)),
+        least_(given_),
+        best_(recording) {}
+
+  Recording Find(const Recording& recording) {
+    const Eigen::VectorXd places = Places(result_.model.tree, coordinate_);
+    if (places.size() == 0) return recording;
+    Recording tried = recording;
+    for (const double place : places) {
+      tried.q.col(coordinate_).setConstant(place);
+      Take(tried);
+    }
+    const double step = kShareOfPlaces * (places[1] - places[0]);
+    for (int k = 0; k < kStepsToNearest; ++k) {
+      const DistanceParabola parabola =
+          ParabolaOf(result_, best_, coordinate_, step, least_, options_);
+      const double flat = kLeastCurvature * std::max(0.0, parabola.Curvature().maxCoeff());
+      tried.q.col(coordinate_) = (best_.q.col(coordinate_).array() + step * parabola.ToLeast(flat))
+                                     .max(places[0])
+                                     .min(places[kPlaces - 1]);
+      Take(tried);
+    }
+    // What hardly changes tells the joint's loads, or noise.
     for (int i = 0; i < recording.posture_count(); ++i) {
-      if (!(squares[i] < least[i])) continue;
-      least[i] = squares[i];
-      best.q(i, coordinate) = moved.q(i, coordinate);
+      if (least_[i] < kLeftByMotion * given_[i]) continue;
+      best_.q(i, coordinate_) = recording.q(i, coordinate_);
     }
-  };
-  for (const double place : places) {
-    tried.q.col(coordinate).setConstant(place);
-    take(tried);
+    return best_;
   }
-  double step = kShareOfPlaces * (places[1] - places[0]);
-  for (int k = 0; k < kStepsToNearest; ++k) {
-    const DistanceParabola parabola = ParabolaOf(result, best, coordinate, step, least, options);
-    tried.q.col(coordinate) = best.q.col(coordinate) + (step * parabola.ToLeast(0.0)).matrix();
-    take(tried);
-  }
-  // What hardly changes tells the joint's loads, or noise.
-  for (int i = 0; i < recording.posture_count(); ++i) {
-    if (!(least[i] < kLeftByMotion * given[i])) {
-      best.q(i, coordinate) = recording.q(i, coordinate);
+
+ private:
+  /// Positions that bring the markers of their posture nearer.
+  void Take(const Recording& tried) {
+    const Eigen::VectorXd squares = SquaresByPosture(result_, tried, options_);
+    for (int i = 0; i < tried.posture_count(); ++i) {
+      if (!(squares[i] < least_[i])) continue;
+      least_[i] = squares[i];
+      best_.q(i, coordinate_) = tried.q(i, coordinate_);
     }
   }
-  return best;
-}
+
+  const CalibrationResult& result_;
+  const CalibrationOptions& options_;
+  int coordinate_;
+  Eigen::VectorXd given_, least_;  // by posture, m^2
+  Recording best_;
+};
 
 /// A coordinate as the markers show it.
 struct ShownMotion {
@@ -102,7 +126,7 @@ ShownMotion MotionOf(const RecordedModel& robot, const Recording& recording,
   ShownMotion motion{coordinate, {}, 0.0};
   CalibrationResult fit = result;
   for (int k = 0; k < kFits; ++k) {
-    const Recording moved = Nearest(fit, recording, coordinate, options);
+    const Recording moved = NearestPositions(fit, recording, coordinate, options).Find(recording);
     fit = Calibrate(robot.model, moved, robot.base, result.kind, options);
     motion.q = moved.q.col(coordinate);
     motion.left = FitError(fit, moved, options);
@@ -145,9 +169,9 @@ std::string FindUnrecordedMotion(const Project& project, const RecordedModel& ro
   const double unit = slides ? 1e-3 : M_PI / 180.0;
   return fmt::format(
       "{0} is not recorded, and the project says that it stood still at {1:.4g} {2}: the markers "
-      "show it elsewhere in {3} of {4} postures, first in {5}, between {6:.4g} and {7:.4g} {2}. "
-      "With it there the error of the fit falls from {8:.3g} to {9:.3g} mm. Record it, or leave "
-      "these postures out",
+      "show it between {6:.4g} and {7:.4g} {2}, in {3} of {4} postures elsewhere than usual, first "
+      "in {5}. With it there the error of the fit falls from {8:.3g} to {9:.3g} mm. Record it, or "
+      "leave out what was measured while it was elsewhere",
       JointOfCoordinate(robot.model.tree, found->coordinate).name,
       recording.q(0, found->coordinate) / unit, slides ? "mm" : "deg", elsewhere.size(),
       recording.posture_count(), DescribePosture(recording, elsewhere.front()),

@@ -65,9 +65,10 @@ std::vector<std::optional<Transform>> TrueWaists(const std::vector<fs::path>& fo
       const WaistTruth truth = ReadWaistTruth(files.truth);
       for (int i = 0; i < recording.posture_count(); ++i) {
         const Trial& trial = recording.trials[recording.trial[i]];
-        const bool same = folders.size() == 1 ? trial.name == files.name
-                                              : trial.session == static_cast<int>(session) &&
-                                                    trial.name.ends_with("/" + files.name);
+        const bool same = folders.size() == 1
+                              ? trial.name == files.name
+                              : trial.session == static_cast<int>(session) &&
+                                    trial.name.substr(trial.name.find('/') + 1) == files.name;
         if (!same || truth.time_s.size() == 0) continue;
         Eigen::Index nearest = 0;
         (truth.time_s.array() - recording.time_s[i]).abs().minCoeff(&nearest);

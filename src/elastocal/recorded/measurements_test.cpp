@@ -145,6 +145,19 @@ TEST_F(MeasurementsTest, TheTruthOfATrialIsThatOfItsOwnFolder) {
   }
 }
 
+TEST_F(MeasurementsTest, AJointThatNoLogHasIsNotRecorded) {
+  WriteExperiment("calibration");
+  JointLog log = ReadJointLog(folder_.path() / "a.csv", project_);
+  ASSERT_EQ(log.names.front(), "head_yaw");
+  log.names.erase(log.names.begin());
+  log.positions = log.positions.rightCols(log.positions.cols() - 1).eval();
+  log.torques.resize(log.positions.rows(), 0);
+  WriteJointLog(folder_.path() / "a.csv", log);
+  project_.recording.not_recorded = {{"head_yaw", 0.1}, {log.names.front(), 0.2}};
+  const Recording recording = ReadMeasurements(project_, {folder_.path()}).calibration;
+  EXPECT_EQ(recording.joints_not_recorded, std::vector<std::string>{"head_yaw"});
+}
+
 TEST_F(MeasurementsTest, ListsEveryFileThatIsRead) {
   WriteExperiment("calibration");
   const auto files = InputFiles(project_, {folder_.path(), "table.csv"});

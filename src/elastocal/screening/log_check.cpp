@@ -31,10 +31,6 @@ constexpr double kAsLogged = 1e-6;                // rad or m
 constexpr int kLeastFrozen = 2;                   // postures
 constexpr int kLeastJudged = 4;                   // of a trial
 
-bool Slides(const RobotTree& tree, int coordinate) {
-  return tree.joints[tree.coordinate_joint[coordinate]].type == JointType::kPrismatic;
-}
-
 /// Median of the absolute values: single postures may be shown wrong.
 double Typical(const Eigen::VectorXd& values) {
   return values.size() == 0 ? 0.0 : Median(values.cwiseAbs());
@@ -127,7 +123,7 @@ class SuspicionSearch {
     return motors_[Size(entry - tree_.coordinate_count())];
   }
   bool EntrySlides(int entry) const {
-    if (!IsMotor(entry)) return Slides(tree_, entry);
+    if (!IsMotor(entry)) return JointOfCoordinate(tree_, entry).type == JointType::kPrismatic;
     const auto [linkage, rod] = MotorOf(entry);
     return LoggedPositionOf(tree_, linkage, rod).slides;
   }
@@ -203,11 +199,9 @@ class SuspicionSearch {
            Range(Logged(c, postures)) >= LeastRange(c);
   }
 
-  /// A motor is not recorded where its joints are not; they are then no entries.
-  bool IsRecorded(int c) const { return IsMotor(c) || elastocal::IsRecorded(recording_, tree_, c); }
-
   void TryExchange(int a, int b, const std::vector<int>& postures) {
-    if (!IsRecorded(a) || !IsRecorded(b)) return;
+    const auto has_column = [&](int c) { return IsMotor(c) || IsRecorded(recording_, tree_, c); };
+    if (!has_column(a) || !has_column(b)) return;
     if (EntrySlides(a) != EntrySlides(b) || IsMotor(a) != IsMotor(b)) return;
     if (IsMotor(a) && MotorOf(a).first != MotorOf(b).first) return;
     const auto off = [&](int c, int by) {
@@ -333,7 +327,7 @@ std::vector<LogSuspicion> PossibleLogMistakes(const Recording& recording, const 
     const bool logged = !IsMovedByRods(tree, tree.coordinate_joint[Size(c)]);  // else its motors
     if (logged && Range(recording.q.col(c)) > 0.0) moving.push_back(c);
   }
-  add(-1, moving, [&](int c) { return Slides(tree, c); });
+  add(-1, moving, [&](int c) { return JointOfCoordinate(tree, c).type == JointType::kPrismatic; });
   signs.insert(signs.end(), exchanges.begin(), exchanges.end());
   return signs;
 }

@@ -197,7 +197,6 @@ TEST_F(LogCheckTest, AJointThatIsLoggedInOnePlaceThroughoutIsTold) {
   EXPECT_EQ(First(changed), "");
 }
 
-// It rests while others move, and the markers show it elsewhere, but in one place.
 TEST_F(LogCheckTest, AJointThatIsNotRecordedAndMovesIsSaidToBeNotRecorded) {
   Recording changed = recording_;
   changed.q.col(Coordinate("right_4")).setZero();
@@ -210,6 +209,7 @@ TEST_F(LogCheckTest, AJointThatIsNotRecordedAndMovesIsSaidToBeNotRecorded) {
   }
 }
 
+// It rests while others move, and the markers show it elsewhere, but in one place.
 TEST_F(LogCheckTest, AJointAtRestIsNotFrozen) {
   Recording rests = recording_;
   auto right_4 = rests.q.col(Coordinate("right_4")).segment(kPlayed + 5, 6);
