@@ -126,7 +126,7 @@ TEST_F(RecordingsApart, TrialsOfAnotherRobotAreNamed) {
   };
   EXPECT_EQ(mixed_with({}), "");
   const std::string one = mixed_with({"monday/leg_left"});
-  EXPECT_NE(one.find(", another one monday/leg_left ("), std::string::npos) << one;
+  EXPECT_NE(one.find("; another one monday/leg_left ("), std::string::npos) << one;
   EXPECT_NE(FaultsOf(mixed({"monday/leg_left"})).find(one), std::string::npos)
       << "not asked for by calibrate";
   const std::string two = mixed_with({"monday/torso_arm_left", "monday/torso_arm_right"});

@@ -9,8 +9,11 @@
 
 namespace elastocal {
 
-/// Recordings that no one robot explains, in words; empty where one does, and for tables. Looked
-/// for only where much more is left than cameras displace markers by.
+/// Whether a fit that leaves this error of the markers, m, leaves so much more than cameras
+/// displace markers by (three times) that it is worth looking for why.
+bool LeavesMoreThanCameras(const CalibrationResult& result, double left);
+
+/// Recordings that no one robot explains, in words; empty where one does, and for tables.
 ///
 /// **Folders** that were given together. Each is fitted by itself. They are apart if that leaves
 /// less than half of the error of `together` (rms distance of the markers), and 0.2 mm less. Then

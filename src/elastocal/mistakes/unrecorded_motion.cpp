@@ -27,7 +27,7 @@ constexpr double kMostTurned = M_PI, kMostSlid = 1.0;  // of a joint without lim
 constexpr int kPlaces = 72;                            // of a joint, to begin with
 constexpr double kShareOfPlaces = 0.25;                // of the distance of two of these
 constexpr int kStepsToNearest = 3;
-constexpr double kLeastCurvature = 0.01;  // of the largest: the joint is shown
+constexpr double kShownCurvature = 0.01;  // of the largest: the joint is shown
 constexpr int kFits = 2;  // the first one has the markers where a joint at rest would
 
 bool Slides(const RobotTree& tree, int coordinate) {
@@ -81,7 +81,7 @@ class NearestPositions {
     for (int k = 0; k < kStepsToNearest; ++k) {
       const DistanceParabola parabola =
           ParabolaOf(result_, best_, coordinate_, step, least_, options_);
-      const double flat = kLeastCurvature * std::max(0.0, parabola.Curvature().maxCoeff());
+      const double flat = kShownCurvature * std::max(0.0, parabola.Curvature().maxCoeff());
       tried.q.col(coordinate_) = (best_.q.col(coordinate_).array() + step * parabola.ToLeast(flat))
                                      .max(places[0])
                                      .min(places[kPlaces - 1]);
