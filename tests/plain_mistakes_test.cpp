@@ -108,6 +108,45 @@ TEST_F(PlainMistakes, SignsAndExchangesOfAnyJoints) {
   ExpectNamed(Find(wrong), "", ": their positions are exchanged");
 }
 
+// Half a turn of a joint explains the sign of the next one as well, and the nominal robot hardly
+// shows a joint that rests while other limbs are measured: the places of the markers tell them
+// apart.
+TEST_F(PlainMistakes, AnotherZeroOfAnyJoint) {
+  const auto& tree = project_.tree;
+  for (const int joint : MakeErrorModel(tree, project_.markers, project_.placement).active_joints) {
+    const int c = tree.joints[Size(joint)].coordinate;
+    const std::string& name = tree.joints[Size(joint)].name;
+    SCOPED_TRACE(name);
+    if (name == "rail_joint" || name == "flange_joint") continue;  // slides; nothing tells its zero
+    Recording wrong = recorded_;
+    wrong.q.col(c).array() += M_PI;
+    ExpectNamed(Find(wrong), name + ": its positions are off by half a turn in all rows", "");
+    wrong.q.col(c).array() -= 1.5 * M_PI;
+    ExpectNamed(Find(wrong), name + ": its positions are a quarter of a turn too small", "");
+  }
+}
+
+TEST_F(PlainMistakes, ASignThatHalfATurnExplainsWhereTheJointRestsInMostPostures) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const int last = project_.tree.joints[Size(model.active_joints.back())].coordinate;
+  Recording wrong = recorded_;
+  wrong.q.col(last).tail(18).setConstant(0.01);
+  wrong.markers = PredictedPositions(model, wrong, Eigen::VectorXd::Zero(model.parameter_count()),
+                                     project_.calibration);
+  wrong.q.col(last) *= -1.0;
+  const std::string& name = project_.tree.joints[Size(model.active_joints.back())].name;
+  ExpectNamed(Find(wrong), name + ": the sign of its positions is reversed",
+              "(--accept sign:" + name + " corrects it)");
+}
+
+TEST_F(PlainMistakes, AllSignsOfALimb) {
+  Recording wrong = recorded_;
+  wrong.q *= -1.0;
+  ExpectNamed(Find(wrong),
+              project_.chains[0].name + ": the signs of the positions of all its joints",
+              "(--accept sign:");
+}
+
 // A column that was not logged is filled with something. One that is right (a joint that was held)
 // is not accused of another joint's mistake.
 TEST_F(PlainMistakes, AColumnThatIsTheSameInAllRows) {
