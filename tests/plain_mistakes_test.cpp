@@ -300,6 +300,30 @@ TEST_F(PlainMistakes, NothingIsEstimatedOrChosenBesideThem) {
   EXPECT_FALSE(run.urdf.has_value());
 }
 
+// The last joint's zero and the places of the markers behind it do the same: no residual tells
+// them apart, but the places in the project do.
+TEST_F(PlainMistakes, AnotherZeroOfTheLastJointIsToldByThePlacesOfItsMarkers) {
+  const auto warned = [&](double zero) {
+    Recording recorded = recorded_;
+    const Joint& flange = project_.tree.joints[Size(FindJoint(project_.tree, "flange_joint"))];
+    recorded.q.col(flange.coordinate).array() += zero;
+    ScratchFolder scratch;
+    WritePostureTable(scratch.path() / "table.csv", recorded, project_.tree);
+    const CalibrationRun run = CalibrateExperiment(project_, {scratch.path() / "table.csv"});
+    EXPECT_TRUE(run.faults.empty());
+    for (const std::string& one : run.warnings) {
+      if (one.find("degrees about the axis of flange_joint") != std::string::npos) return one;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(warned(0.0), "");
+  for (const double zero : {M_PI, 1.2}) {
+    const std::string warning = warned(zero);
+    EXPECT_EQ(warning.find("cluster TOOL: its markers are "), 0u) << zero << warning;
+  }
+  EXPECT_EQ(warned(0.1), "");  // 6 degrees: a ruler may err by as much
+}
+
 class PlainMistakesOfLinks : public LinkedBiped {
  protected:
   PlainMistakesOfLinks()
