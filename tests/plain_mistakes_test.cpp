@@ -126,19 +126,6 @@ TEST_F(PlainMistakes, AnotherZeroOfAnyJoint) {
   }
 }
 
-TEST_F(PlainMistakes, ASignThatHalfATurnExplainsWhereTheJointRestsInMostPostures) {
-  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
-  const int last = project_.tree.joints[Size(model.active_joints.back())].coordinate;
-  Recording wrong = recorded_;
-  wrong.q.col(last).tail(18).setConstant(0.01);
-  wrong.markers = PredictedPositions(model, wrong, Eigen::VectorXd::Zero(model.parameter_count()),
-                                     project_.calibration);
-  wrong.q.col(last) *= -1.0;
-  const std::string& name = project_.tree.joints[Size(model.active_joints.back())].name;
-  ExpectNamed(Find(wrong), name + ": the sign of its positions is reversed",
-              "(--accept sign:" + name + " corrects it)");
-}
-
 TEST_F(PlainMistakes, AllSignsOfALimb) {
   Recording wrong = recorded_;
   wrong.q *= -1.0;
