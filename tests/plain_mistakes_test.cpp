@@ -108,6 +108,32 @@ TEST_F(PlainMistakes, SignsAndExchangesOfAnyJoints) {
   ExpectNamed(Find(wrong), "", ": their positions are exchanged");
 }
 
+// Half a turn of a joint explains the sign of the next one as well, and the nominal robot hardly
+// shows a joint that rests while other limbs are measured: the places of the markers tell them
+// apart.
+TEST_F(PlainMistakes, AnotherZeroOfAnyJoint) {
+  const auto& tree = project_.tree;
+  for (const int joint : MakeErrorModel(tree, project_.markers, project_.placement).active_joints) {
+    const int c = tree.joints[Size(joint)].coordinate;
+    const std::string& name = tree.joints[Size(joint)].name;
+    SCOPED_TRACE(name);
+    if (name == "rail_joint" || name == "flange_joint") continue;  // slides; nothing tells its zero
+    Recording wrong = recorded_;
+    wrong.q.col(c).array() += M_PI;
+    ExpectNamed(Find(wrong), name + ": its positions are off by half a turn in all rows", "");
+    wrong.q.col(c).array() -= 1.5 * M_PI;
+    ExpectNamed(Find(wrong), name + ": its positions are a quarter of a turn too small", "");
+  }
+}
+
+TEST_F(PlainMistakes, AllSignsOfALimb) {
+  Recording wrong = recorded_;
+  wrong.q *= -1.0;
+  ExpectNamed(Find(wrong),
+              project_.chains[0].name + ": the signs of the positions of all its joints",
+              "(--accept sign:");
+}
+
 // A column that was not logged is filled with something. One that is right (a joint that was held)
 // is not accused of another joint's mistake.
 TEST_F(PlainMistakes, AColumnThatIsTheSameInAllRows) {
@@ -259,6 +285,30 @@ TEST_F(PlainMistakes, NothingIsEstimatedOrChosenBesideThem) {
   EXPECT_EQ(run.cross_validation.folds, 0);
   EXPECT_TRUE(run.elasticity.empty());
   EXPECT_FALSE(run.urdf.has_value());
+}
+
+// The last joint's zero and the places of the markers behind it do the same: no residual tells
+// them apart, but the places in the project do.
+TEST_F(PlainMistakes, AnotherZeroOfTheLastJointIsToldByThePlacesOfItsMarkers) {
+  const auto warned = [&](double zero) {
+    Recording recorded = recorded_;
+    const Joint& flange = project_.tree.joints[Size(FindJoint(project_.tree, "flange_joint"))];
+    recorded.q.col(flange.coordinate).array() += zero;
+    ScratchFolder scratch;
+    WritePostureTable(scratch.path() / "table.csv", recorded, project_.tree);
+    const CalibrationRun run = CalibrateExperiment(project_, {scratch.path() / "table.csv"});
+    EXPECT_TRUE(run.faults.empty());
+    for (const std::string& one : run.warnings) {
+      if (one.find("degrees about the axis of flange_joint") != std::string::npos) return one;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(warned(0.0), "");
+  for (const double zero : {M_PI, 1.2}) {
+    const std::string warning = warned(zero);
+    EXPECT_EQ(warning.find("cluster TOOL: its markers are "), 0u) << zero << warning;
+  }
+  EXPECT_EQ(warned(0.1), "");  // 6 degrees: a ruler may err by as much
 }
 
 class PlainMistakesOfLinks : public LinkedBiped {

@@ -256,11 +256,11 @@ PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
     if (columns.coordinates[c] >= 0) continue;
     recording.joints_not_recorded.push_back(JointOfCoordinate(project.tree, c).name);
   }
-  CheckPlausible(recording, project.tree);
   if (const auto other =
           FindOtherUnit(recording.markers, recording.marker_names, project.markers)) {
     throw InputError(source + ": " + Describe(*other));
   }
+  CheckPlausible(recording, project.tree);
   for (std::string& warning : LimitWarnings(recording, project.tree)) {
     result.warnings.push_back(std::move(warning));
   }

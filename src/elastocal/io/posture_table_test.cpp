@@ -302,6 +302,16 @@ TEST(PostureTable, RefusesOneMarkerInAnotherUnit) {
             project);
       },
       {"t.csv", "marker N", "1000 times too small"});
+  // One that ranges over more than the robot's size is told by its distances as well.
+  ExpectInputError(
+      [&] {
+        ReadTable(
+            "M_x,M_y,M_z,N_x,N_y,N_z,O_x,O_y,O_z,q\n"
+            "1,1,0.5,1090,1000,500,1,1.06,0.5,0.1\n"
+            "1.2,1,0.5,1290,1000,500,1.2,1.06,0.5,0.3\n",
+            project);
+      },
+      {"t.csv", "marker N", "1000 times too large"});
 }
 
 TEST(PostureTable, WritesWhatItReads) {

@@ -15,6 +15,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/readers/joint_columns.hpp"
+#include "elastocal/readers/lengths.hpp"
 #include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/readers/times.hpp"
 #include "elastocal/tables/table_reader.hpp"
@@ -127,6 +128,7 @@ MarkerFile ReadMarkerFile(const fs::path& file, const ReaderOptions& options,
     markers.up = read.up;
     markers.start_s = read.markers_start_s;
   } else {
+    UnitOf("mm", options.unit, source.name());  // refuses another one
     markers.trajectories = ReadQtmTsv(file);
     markers.up_is_z = true;
   }
@@ -268,6 +270,7 @@ RecordingFile ReadAnyRecording(const fs::path& file, const ReaderOptions& option
   RecordingFile read;
   if (BeginsLikeQtm(source)) {
     read.format = "Qualisys TSV";
+    UnitOf("mm", options.unit, source.name());  // refuses another one
     read.markers = ReadQtmTsv(file);
     read.up = "z";
     read.why_no_joints = "a Qualisys TSV has no joint positions";

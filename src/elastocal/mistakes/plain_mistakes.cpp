@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -18,7 +17,11 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/log_alternatives.hpp"
+#include "elastocal/mistakes/offsets_fit.hpp"
+#include "elastocal/mistakes/other_followers.hpp"
+#include "elastocal/mistakes/other_zeros.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/whole_limbs.hpp"
 #include "elastocal/recorded/find_base.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/screening/log_check.hpp"
@@ -36,6 +39,7 @@ constexpr double kMostLeft = 0.02, kMostOfSize = 0.01;
 // What is left at most once a mistake is undone, of the placed nominal robot:
 constexpr double kLeftOfMisfit = 0.7;
 constexpr double kLeftByOneOfSeveral = 0.9;
+constexpr double kMuchLess = 0.5;             // of what other mistakes leave
 constexpr double kLeftByToldPositions = 0.3;  // of one joint, told by the markers
 constexpr double kUntold = std::numeric_limits<double>::infinity();
 constexpr double kLeftWhereNoRobot = 0.5;  // where the offsets with the mistake are no robot's
@@ -121,10 +125,11 @@ class PlainSearch {
 
   /// Mistakes, each beside those before it; empty: none.
   std::vector<Alternative> Run() {
-    for (const auto& search :
-         {&PlainSearch::FindInTable, &PlainSearch::FindExchange, &PlainSearch::FindWrongFollower,
-          &PlainSearch::FindLostColumn, &PlainSearch::FindHalfTurn, &PlainSearch::FindOtherColumn,
-          &PlainSearch::FindPair}) {
+    if (std::vector<Alternative> turned = FindTurned(); !turned.empty()) return turned;
+    for (const auto& search : {&PlainSearch::FindInTableOrZero, &PlainSearch::FindExchange,
+                               &PlainSearch::FindWrongFollower, &PlainSearch::FindWholeLimb,
+                               &PlainSearch::FindLostColumn, &PlainSearch::FindHalfTurn,
+                               &PlainSearch::FindOtherColumn, &PlainSearch::FindPair}) {
       std::vector<Alternative> found = Confirmed((this->*search)());
       if (!found.empty()) return found;
     }
@@ -133,6 +138,18 @@ class PlainSearch {
   }
 
  private:
+  /// Half a turn of a joint may look like the sign of another one, which leaves more.
+  std::vector<Alternative> FindInTableOrZero() const {
+    std::vector<Alternative> in_table = FindInTable(), zero = FindOtherZero();
+    if (in_table.empty() || zero.empty()) return zero.empty() ? in_table : zero;
+    const OffsetsFit by_zero = FitOffsetsOf(zero.back()), by_table = FitOffsetsOf(in_table.back());
+    return by_zero.error < kMuchLess * by_table.error ? zero : in_table;
+  }
+
+  double LeftOf(const std::vector<Alternative>& steps) const {
+    return MisfitOf(steps.back().model, steps.back().recording);
+  }
+
   std::vector<Alternative> FindInTable() const {
     const auto misfit = [&](const Recording& corrected) {
       return MisfitOf(given_.model, corrected);
@@ -178,58 +195,18 @@ class PlainSearch {
     }
   }
 
-  /// Joints that follow others otherwise than described: the other way, or not; each, and all that
-  /// follow the same one.
   std::vector<Alternative> FindWrongFollower() const {
-    const RobotTree& tree = project_.tree;
-    std::vector<std::vector<Follower>> groups;
-    std::map<int, std::vector<Follower>> led;
-    for (std::size_t k = 0; k < tree.joints.size(); ++k) {
-      if (!tree.joints[k].mimic) continue;
-      const std::vector<Drive> drives = DrivesOf(tree.joints[k]);
-      for (std::size_t d = 0; d < drives.size(); ++d) {
-        groups.push_back({{k, d}});
-        led[drives[d].coordinate].push_back({k, d});
-      }
-    }
-    for (const auto& [coordinate, followers] : led) {
-      if (followers.size() > 1) groups.push_back(followers);
-    }
     std::vector<Alternative> found;
     double least = kLeftOfMisfit * misfit_;
-    for (const std::vector<Follower>& group : groups) {
-      for (const double factor : {-1.0, 0.0}) {
-        Alternative other = Following(group, factor);
-        const double left = MisfitOf(other.model, other.recording);
-        if (!(left < least)) continue;
-        least = left;
-        found = {std::move(other)};
-      }
+    for (FollowerAlternative& one : OtherFollowers(project_)) {
+      Alternative other{std::move(one.what), "", ModelOf(one.project, given_.recording),
+                        given_.recording};
+      const double left = MisfitOf(other.model, other.recording);
+      if (!(left < least)) continue;
+      least = left;
+      found = {std::move(other)};
     }
     return found;
-  }
-
-  /// A joint, and which of those that it follows.
-  struct Follower {
-    std::size_t joint = 0, drive = 0;
-  };
-
-  Alternative Following(const std::vector<Follower>& group, double factor) const {
-    Project other = project_;
-    const RobotTree& tree = project_.tree;
-    std::string what;
-    for (const Follower& one : group) {
-      const Drive drive = DrivesOf(tree.joints[one.joint])[one.drive];
-      Joint& joint = other.tree.joints[one.joint];
-      (one.drive == 0 ? joint.multiplier : joint.more[one.drive - 1].multiplier) *= factor;
-      const Joint& leads = tree.joints[Size(tree.coordinate_joint[Size(drive.coordinate)])];
-      what +=
-          (what.empty() ? "" : ", ") +
-          fmt::format("{} seems to follow {} by a factor of {:g}, not {:g} as described",
-                      joint.name, leads.name, factor * drive.multiplier + 0.0, drive.multiplier);
-    }
-    return {what + " (couplings of the project, mimic of the URDF)", "",
-            ModelOf(other, given_.recording), given_.recording};
   }
 
   /// A joint that moved, and whose column says the same in all rows: the markers tell where it was.
@@ -273,16 +250,46 @@ class PlainSearch {
     return found;
   }
 
+  std::vector<Alternative> FindOtherZero() const {
+    if (misfit_ < least_) return {};
+    return BestOf(OtherZeros(given_.recording, project_.tree, given_.model.active_joints));
+  }
+
+  std::vector<Alternative> FindWholeLimb() const {
+    if (misfit_ < least_) return {};
+    return BestOf(WholeLimbs(given_.recording, project_));
+  }
+
   std::vector<Alternative> FindOtherColumn() const {
     if (misfit_ < least_) return {};
+    return BestOf(OtherColumns(given_.recording, project_.tree, given_.model.active_joints));
+  }
+
+  /// The one that explains most, if it explains enough.
+  std::vector<Alternative> BestOf(std::vector<LogAlternative> others) const {
     std::vector<Alternative> found;
     double least = kLeftOfMisfit * misfit_;
-    for (LogAlternative& one :
-         OtherColumns(given_.recording, project_.tree, given_.model.active_joints)) {
+    for (LogAlternative& one : others) {
       const double left = MisfitOf(given_.model, one.recording);
       if (!(left < least)) continue;
       least = left;
-      found = {{std::move(one.what), "", given_.model, std::move(one.recording)}};
+      found = {{std::move(one.what), std::move(one.name), given_.model, std::move(one.recording)}};
+    }
+    return found;
+  }
+
+  /// Mistakes that offsets explain which no robot has: they hardly show in how far the markers are.
+  std::vector<Alternative> FindTurned() const {
+    std::vector<Alternative> found;
+    const OffsetsFit with = FitOffsetsOf(given_);
+    if (!(with.error < kMostLeft)) return found;
+    for (LogAlternative& one : FindTurnedZeros(project_, given_.model, given_.recording, with)) {
+      one.what += fmt::format(
+          "; without that, markers are {:.3g} mm off with joint offsets "
+          "estimated, with it by errors that no robot has",
+          1e3 * with.error);
+      found.push_back(
+          {std::move(one.what), std::move(one.name), given_.model, std::move(one.recording)});
     }
     return found;
   }
@@ -333,22 +340,14 @@ class PlainSearch {
     return {free};
   }
 
-  struct OffsetsFit {
-    double error = std::numeric_limits<double>::infinity();  ///< rms distance of the markers, m
-    bool robot = false;  ///< whether some robot may have the offsets
-  };
-
-  OffsetsFit FitOffsets(const Alternative& of) const {
-    const auto result = Fit(of, ModelKind::kOffsetsOnly, project_);
-    if (!result) return {};
-    return {MarkerError(*result, of.recording, project_.calibration),
-            std::isfinite(FitError(*result, of.recording, project_.calibration))};
+  OffsetsFit FitOffsetsOf(const Alternative& of) const {
+    return FitOffsets(project_, of.model, of.recording);
   }
 
   /// All of them, with the evidence, unless offsets of joints explain them.
   std::vector<Alternative> Confirmed(std::vector<Alternative> steps) const {
     if (steps.empty()) return {};
-    const double left = MisfitOf(steps.back().model, steps.back().recording);
+    const double left = LeftOf(steps);
     if (left > kLeftOfMisfit * misfit_) return {};
     return ConfirmedByOffsets(std::move(steps), left);
   }
@@ -357,7 +356,7 @@ class PlainSearch {
   std::vector<Alternative> ConfirmedByOffsets(std::vector<Alternative> steps,
                                               double left = kUntold) const {
     if (steps.empty()) return {};
-    const OffsetsFit with = FitOffsets(given_), without = FitOffsets(steps.back());
+    const OffsetsFit with = FitOffsetsOf(given_), without = FitOffsetsOf(steps.back());
     if (!std::isfinite(with.error) || !(without.error < kMostLeft)) return {};
     // Offsets of half a turn, and zeros of motors, explain much or all, with values that no robot
     // has.

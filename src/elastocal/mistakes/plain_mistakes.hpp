@@ -14,10 +14,12 @@ namespace elastocal {
 /// fewer than eight postures. Each is undone, and is a mistake if less than 0.7 of PlacedMisfit is
 /// left, and of the error of a robot whose joint offsets are estimated less than a half and 20 mm.
 /// (Where those offsets are such as no robot has, they explain much by themselves: then less than a
-/// half of PlacedMisfit, and of the error no more.) Tried are: the sign of each joint or motor,
-/// labels exchanged, rows shifted (RecordingMistake); then two joints or motors exchanged; then
-/// couplings and mimic joints of the opposite sign or that do not follow; then a joint's column
-/// that is the same in all rows, which the markers contradict; then a root link that
+/// half of PlacedMisfit, and of the error no more.) Tried are: offsets that no robot has
+/// (FindTurnedZeros); the sign of each joint or motor, labels exchanged, rows shifted
+/// (RecordingMistake), or another zero of a joint (OtherZeros); then two joints or motors
+/// exchanged; then couplings and mimic joints of the opposite sign or that do not follow
+/// (OtherFollowers); then all signs of a limb, or the columns of two limbs (WholeLimbs); then a
+/// joint's column that is the same in all rows, which the markers contradict; then a root link that
 /// stands elsewhere in each posture, for which all geometric errors are estimated. First of all, a
 /// frame of the markers that lies elsewhere from some posture on (FindMovedFrame).
 std::vector<std::string> FindPlainMistakes(const Project& project, const Recording& recording);

@@ -32,6 +32,7 @@
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/screening/coarse_positions.hpp"
 #include "elastocal/screening/loose_clusters.hpp"
+#include "elastocal/screening/turned_clusters.hpp"
 
 namespace elastocal {
 namespace {
@@ -171,6 +172,10 @@ void WarnOfWhatWasRecorded(Work& work) {
   const CalibrationResult& fit = run.comparison.largest();
   run.common_scale = EstimateCommonScale(fit, work.settings());
   if (!run.faults.empty()) return;  // they are worse
+  const std::vector<LabelCluster> clusters = SeenClusters(work.project, work.recording());
+  for (const TurnedCluster& one : FindTurnedClusters(fit, clusters)) {
+    run.warnings.push_back(Describe(one));
+  }
   const std::vector<TrialSummary>& trials = work.as_recorded.trials;
   for (const CoarsePositions& one :
        FindCoarsePositions(fit, work.recording(), work.settings(), trials)) {
@@ -179,8 +184,7 @@ void WarnOfWhatWasRecorded(Work& work) {
   if (const auto loose = FindScatteredPositions(fit, work.recording(), work.settings())) {
     run.warnings.push_back(Describe(*loose, work.project.tree));
   } else if (const auto cluster =
-                 FindLooseCluster(fit, work.recording(),
-                                  SeenClusters(work.project, work.recording()), work.settings())) {
+                 FindLooseCluster(fit, work.recording(), clusters, work.settings())) {
     run.warnings.push_back(Describe(*cluster));
   }
   if (run.common_scale && IsDoubtful(*run.common_scale) && !ScaleIsKnown(trials)) {

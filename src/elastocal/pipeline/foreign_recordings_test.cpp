@@ -111,6 +111,9 @@ TEST_F(ForeignRecordingsTest, WhatTheFileDoesNotSayIsAskedFor) {
   ExpectSame(Read("a.c3d", "a.csv", "", ", markers_unit: mm"), 2e-7);
   ExpectInputError([&] { Read("a.c3d", "a.csv", "", ", markers_unit: furlong"); },
                    {"experiment.yaml", "furlong", "mm, cm"});
+  // The positions of a Qualisys TSV are in mm, whatever it says.
+  ExpectInputError([&] { Read("a.tsv", "a.csv", "", ", markers_unit: m"); },
+                   {"a.tsv", "states the unit 'mm', not 'm'"});
   ExpectInputError([&] { Read("a.csv.npz", "a.csv"); }, {"a.csv.npz"});
   JointLog in_ms = played_.log;
   in_ms.time_s *= 1e3;
