@@ -120,6 +120,40 @@ TEST_F(CalibrationFile, ReadsBackWhatTheUrdfHasOfAnotherModel) {
   ExpectInputError([&] { ReadCalibration(file_); }, {"no_rail_joint", "the list below has"});
 }
 
+TEST_F(CalibrationFile, ReadsBackWhatGivesWayBelowTheFeet) {
+  Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin));
+  EXPECT_TRUE(ReadCalibration(file_).soles.empty());  // as files of earlier versions
+  const std::vector<SoleSpring> soles = {
+      {.leg = "left", .changes = 3, .compliance = 7.4e-7, .sd = 4e-8, .interval_factor = 2.1},
+      {.leg = "tail"},  // nothing told of it
+      {.leg = "right", .changes = 1, .compliance = -1e-7, .sd = 3e-7, .interval_factor = 4.3}};
+  Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin, {.soles = soles}));
+  const std::vector<SoleSpring> stored = ReadCalibration(file_).soles;
+  ASSERT_EQ(stored.size(), 2u);
+  for (std::size_t i : {0u, 1u}) {
+    EXPECT_EQ(stored[i].leg, soles[2 * i].leg);
+    EXPECT_EQ(stored[i].changes, soles[2 * i].changes);
+    EXPECT_EQ(stored[i].compliance, soles[2 * i].compliance);
+    EXPECT_EQ(stored[i].sd, soles[2 * i].sd);
+    EXPECT_EQ(stored[i].interval_factor, soles[2 * i].interval_factor);
+  }
+  EXPECT_EQ(ReadEstimate(file_).parameters.size(), result_.model.parameters.size());
+  const std::string text = ReadFile(file_);
+  const auto with = [&](const std::string& found, const std::string& instead) {
+    std::string changed = text;
+    changed.replace(changed.find(found), found.size(), instead);
+    Write(changed);
+  };
+  with("leg: right", "leg: left");
+  ExpectInputError([&] { ReadCalibration(file_); }, {"soles", "every leg once"});
+  with("m/N", "mm/N");
+  ExpectInputError([&] { ReadCalibration(file_); }, {"soles", "'mm/N'", "m/N"});
+  with("changes: 3", "changes: 0");
+  ExpectInputError([&] { ReadCalibration(file_); }, {"changes", "0", "1"});
+  with("sd: 4e-08", "sd: -4e-08");
+  ExpectInputError([&] { ReadCalibration(file_); }, {"sd", "above 0"});
+}
+
 TEST_F(CalibrationFile, ReadsBackWhatAComparisonNeeds) {
   Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin));
   CalibrationEstimate estimate = ReadEstimate(file_);

@@ -56,6 +56,8 @@ export function sampleSummary() {
     legs: [{name: 'leg_left', stiffness: [57.7, 75.3, 186, 24700, 5230, null],
       interval_95: [[33, null], [32, null], [181.5, 190.2], [22500, 26800], [5190, 5270], [null, null]],
       known: [false, false, true, true, true, false]}],
+    soles: [{leg: 'leg_left', changes: 3, compliance_um_per_n: 0.742, sd_um_per_n: 0.041, most_um_per_n: 0.831, told: true},
+      {leg: 'leg_right', changes: 0, compliance_um_per_n: null, sd_um_per_n: null, most_um_per_n: null, told: false}],
     outliers: [{posture: 3, marker: EVIL, residual_mm: 12.3, normalised: 8.1}],
     trials: [{name: EVIL, chains: ['leg'], used: true, postures: 24, samples: 192, clock: {lag_s: 2.1}, findings: ['a finding']}],
     excitation: {condition_base: 84.2, O1: 0.793, hardly_excited: ['leg_1_joint.r']},

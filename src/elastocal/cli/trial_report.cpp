@@ -56,6 +56,30 @@ std::string DescribeLegs(const std::vector<LegStiffness>& legs) {
   return table.Render();
 }
 
+/// What gives way below the markers of the feet; nothing for a robot without legs.
+std::string DescribeSoles(const std::vector<SoleSpring>& soles) {
+  std::string text;
+  bool open = false;
+  for (const SoleSpring& sole : soles) {
+    open = open || !sole.told();
+    if (!std::isfinite(sole.sd)) {
+      text += fmt::format("  {}: not told\n", sole.leg);
+    } else if (!sole.told()) {
+      text += fmt::format("  {}: not told, at most {:.2f} um/N\n", sole.leg, 1e6 * sole.most());
+    } else {
+      text += fmt::format("  {}: {:.2f} um/N (sd {:.2f}; the load changed {} times)\n", sole.leg,
+                          1e6 * sole.compliance, 1e6 * sole.sd, sole.changes);
+    }
+  }
+  if (open) {
+    text +=
+        "  It shows where a foot stays and its load changes: record a trial on one foot right\n"
+        "  before or after one on both, with the torques of both legs, without setting that foot\n"
+        "  down anew.\n";
+  }
+  return text.empty() ? "" : "\nSpring between the markers of a foot and the floor\n" + text;
+}
+
 }  // namespace
 
 std::string DescribeTrials(const CalibrationRun& run) {
@@ -89,7 +113,8 @@ std::string DescribeElasticity(const CalibrationRun& run) {
          (unsupported.empty() ? ""
                               : "Compliances of which this recording tells hardly more than was "
                                 "assumed (one sd):\n" +
-                                    unsupported);
+                                    unsupported) +
+         DescribeSoles(run.soles);
 }
 
 std::string DescribeFeet(const CalibrationRun& run) {

@@ -2,6 +2,7 @@
 #include "elastocal/exports/runtime_robot.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
@@ -244,6 +245,30 @@ void MarkLegs(const RobotTree& tree, const std::vector<Leg>& legs, RuntimeModel&
   }
 }
 
+/// What gives way below the markers of a foot is a part of its leg. Eq. 6 has the load that the
+/// waist puts on the leg, but the sole bears the leg as well: on one foot this is the same factor
+/// in all postures. (On two it is somewhat more, by which the soles then sink less than they do.)
+void AddSoles(const StoredCalibration& calibration, RuntimeModel& model) {
+  const double total = std::accumulate(model.mass.begin(), model.mass.end(), 0.0);
+  for (const SoleSpring& sole : calibration.soles) {
+    const auto name = std::ranges::find(model.foot_names, sole.leg);
+    if (name == model.foot_names.end()) {
+      throw InputError(calibration.source + ": soles: the robot has no leg '" + sole.leg + "'" +
+                       DidYouMean(sole.leg, model.foot_names));
+    }
+    if (!sole.told()) continue;
+    const int f = static_cast<int>(name - model.foot_names.begin());
+    double leg = 0.0;
+    for (std::size_t body = 0; body < model.mass.size(); ++body) {
+      if (model.leg_of_body[body] == f) leg += model.mass[body];
+    }
+    ec_foot& foot = model.feet[Size(f)];
+    Eigen::Index upright = 0;
+    Eigen::Map<const Eigen::Vector3d>(foot.up).cwiseAbs().maxCoeff(&upright);
+    foot.compliance[upright] += sole.compliance * total / (total - leg);
+  }
+}
+
 void AddLimbs(const Project& project, const StoredRobot& robot, bool elastic, RuntimeModel& model) {
   const std::vector<NamedChain> chains = ChainNames(project);
   const std::vector<Leg> legs = FindLegs(project.tree, chains);
@@ -356,6 +381,7 @@ RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& c
   SetGravity(robot.model, calibration, model);
   if (content == RuntimeContent::kEverything) ApplyCauses(project.tree, calibration, model);
   AddLimbs(project, robot, content == RuntimeContent::kEverything, model);
+  if (content == RuntimeContent::kEverything) AddSoles(calibration, model);
   FindBranches(model);
   return model;
 }

@@ -15,6 +15,8 @@
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/files/yaml_value.hpp"
 #include "elastocal/io/fingerprint.hpp"
+#include "elastocal/io/parameter_units.hpp"
+#include "elastocal/io/sole_springs_file.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/tables/text.hpp"
@@ -24,34 +26,6 @@ namespace {
 constexpr const char* kFormat = "elastocal-calibration-1";
 constexpr const char* kWhatCalibrateWrites = "format elastocal-calibration-1 of calibrate's file";
 constexpr std::int64_t kMostEstimates = 1000000;
-
-/// Units that a parameter can have by the last part of its name, and the largest value that is a
-/// deviation of a robot and not a damaged file.
-struct NamedUnits {
-  std::vector<std::string> units;
-  double most = std::numeric_limits<double>::infinity();
-};
-
-NamedUnits UnitsOf(const std::string& parameter) {
-  const std::string suffix = parameter.substr(parameter.rfind('.') + 1);
-  for (const char* angle : {"theta", "alpha", "beta", "gamma", "zero", "tilt_x", "tilt_y"}) {
-    if (suffix == angle) return {{"rad"}, M_PI};
-  }
-  if (suffix == "torque_bias") return {{"N.m", "N"}};
-  if (suffix == "gear") return {{"1"}, 1.0};
-  if (suffix.starts_with("coupling_")) return {{"1", "m/rad", "rad/m"}, M_PI};
-  if (suffix.starts_with("suspension_r")) return {{"rad/(N.m)"}};
-  if (suffix.starts_with("suspension_")) return {{"1/N"}};
-  if (suffix.starts_with("drift_") || suffix.starts_with("creep_")) return {{"m/h"}};
-  if (suffix == "mass") return {{"kg"}};
-  if (suffix.starts_with("moment_")) return {{"kg.m"}};
-  for (const char* correction : {"eccentricity_sin", "eccentricity_cos", "ellipticity_sin",
-                                 "ellipticity_cos", "backlash", "hysteresis", "stiffening"}) {
-    if (suffix == correction) return {{"rad", "m"}, M_PI};
-  }
-  if (suffix.starts_with("compliance_")) return {{"rad/(N.m)", "m/N"}};
-  return {{"m"}, 1000.0};  // markers and waist in the frame of any laboratory
-}
 
 void EmitParameter(const CalibrationResult& result, int i, YAML::Emitter& yaml) {
   const Parameter& parameter = result.model.parameters[i];
@@ -234,6 +208,7 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
   EmitMarkers(result.model, yaml);
   if (beside.uncalibrated != nullptr) EmitUncalibrated(*beside.uncalibrated, yaml);
   if (beside.in_urdf != nullptr) EmitInUrdf(*beside.in_urdf, yaml);
+  EmitSoleSprings(beside.soles, yaml);
   yaml << YAML::Key << "parameter_count" << YAML::Value << result.model.parameter_count()
        << YAML::Comment("a file that was cut has fewer");
   yaml << YAML::Key << "parameters" << YAML::Value << YAML::BeginSeq;
@@ -328,6 +303,7 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
   stored.recording = estimate.recording;
   stored.rmse_3d = ReadErrorMm(root, kLeft);
   stored.held_out = {ReadErrorMm(root, kHeldOutUrdf), ReadErrorMm(root, kHeldOut)};
+  stored.soles = ReadSoleSprings(root);
   if (const auto factor = root.Find("cluster_factor")) {
     factor->Expect(factor->Number() >= 0.0, "a ratio of variances");
     stored.scatter_sd =

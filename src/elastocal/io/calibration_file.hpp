@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/sole_springs.hpp"
 #include "elastocal/description/calibrated_urdf.hpp"
 #include "elastocal/robot/statics.hpp"
 #include "elastocal/validation/common_parameters.hpp"
@@ -32,6 +33,7 @@ struct BesideCalibration {
   /// What the result leaves of its own markers, outliers included, m; 0: not known.
   double rmse_3d = 0.0;
   HeldOutErrors held_out = {};
+  std::vector<SoleSpring> soles = {};
 };
 
 /// calibration.yaml: every parameter with unit, value, standard deviation and status, and what is
@@ -65,6 +67,7 @@ struct StoredCalibration {
   std::map<std::string, double> joint_errors;  ///< by parameter name, SI
   /// The errors that the calibrated URDF has, where they are others; else empty.
   std::map<std::string, double> urdf_errors;
+  std::vector<SoleSpring> soles;  ///< of the feet that a load told anything of
   /// Of a table of postures: nominal pose of the waist in the frame of the recording.
   std::optional<Transform> T_ref_waist;
   Eigen::Vector3d gravity = kGravity;  ///< in that frame, m/s^2

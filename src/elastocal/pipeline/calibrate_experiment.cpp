@@ -26,6 +26,7 @@
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/ends_of_limbs.hpp"
 #include "elastocal/pipeline/known_places.hpp"
+#include "elastocal/pipeline/known_soles.hpp"
 #include "elastocal/pipeline/still_joints.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/recorded/repeated_trials.hpp"
@@ -384,6 +385,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   // Not in the paper: no measurement tells where the waist's frame is on the robot.
   GiveGauge(work.settings(), run.comparison);
   run.frames = AssessFrames(run.comparison.largest(), work.recording(), EndsOfLimbs(work.project));
+  run.soles = KnownSoles(run.comparison.largest(), work.measured, options.prior);
   run.waist_error = WaistErrors(run.comparison, work.measured, work.settings());
   MakeUrdf(work);
   return Finished(std::move(work));

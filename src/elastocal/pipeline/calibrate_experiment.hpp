@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "elastocal/calibration/frame_precision.hpp"
+#include "elastocal/calibration/sole_springs.hpp"
 #include "elastocal/description/calibrated_urdf.hpp"
 #include "elastocal/identifiability/observability.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
@@ -71,10 +72,12 @@ struct CalibrationRun {
   std::vector<std::string> decided_once;  ///< what its folds did not decide anew (DecidedOnce)
   std::vector<TrialSummary> trials;       ///< of recording folders: what was used of each trial
   std::vector<Knock> knocks;              ///< clusters that were knocked, and are taken as two
-  Recording validation;                ///< trials that took no part in the estimate; may be empty
-  std::optional<HeldOut> held_out;     ///< errors on them, where there are any
-  ByModel<double> waist_error = {};    ///< m, see WaistError; NaN where the truth is unknown
-  Deployment deployment;               ///< what a user takes home, and its error
+  Recording validation;              ///< trials that took no part in the estimate; may be empty
+  std::optional<HeldOut> held_out;   ///< errors on them, where there are any
+  ByModel<double> waist_error = {};  ///< m, see WaistError; NaN where the truth is unknown
+  Deployment deployment;             ///< what a user takes home, and its error
+  /// Of the feet, by all trials; where these tell nothing, as an earlier calibration has them.
+  std::vector<SoleSpring> soles;
   std::vector<FramePrecision> frames;  ///< of the ends of limbs, which no error of markers shows
   Verdict verdict;
   /// The robot description with the estimates in it; nothing where the verdict has objections.

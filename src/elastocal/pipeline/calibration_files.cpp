@@ -63,7 +63,8 @@ std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
          .in_urdf = same ? nullptr : &results[static_cast<int>(in_urdf)],
          .gravity = run.recording.gravity,
          .rmse_3d = run.comparison.metrics_all[static_cast<int>(result.kind)].rmse_3d,
-         .held_out = HeldOutErrorsOf(run)});
+         .held_out = HeldOutErrorsOf(run),
+         .soles = run.soles});
     files["offsets.xacro"] = MakeXacroOffsets(*run.urdf);
     files["covariance.csv"] = MakeCovarianceCsv(result);
     if (!project.tree.linkages.empty()) files["linkages.yaml"] = MakeLinkagesYaml(result);

@@ -52,4 +52,18 @@ Json LegsJson(const CalibrationRun& run) {
   return legs;
 }
 
+Json SolesJson(const CalibrationRun& run) {
+  Json soles = Json::array();
+  for (const SoleSpring& sole : run.soles) {
+    const double found = std::isfinite(sole.sd) ? sole.compliance : NAN;
+    soles.push_back({{"leg", sole.leg},
+                     {"changes", sole.changes},
+                     {"compliance_um_per_n", Finite(1e6 * found)},
+                     {"sd_um_per_n", Finite(1e6 * sole.sd)},
+                     {"most_um_per_n", Finite(1e6 * sole.most())},
+                     {"told", sole.told()}});
+  }
+  return soles;
+}
+
 }  // namespace elastocal

@@ -16,4 +16,7 @@ nlohmann::ordered_json FramesJson(const CalibrationRun& run);
 /// How stiff the legs are at the waist: `legs` of summary.json. Null for a robot without legs.
 nlohmann::ordered_json LegsJson(const CalibrationRun& run);
 
+/// What gives way below the markers of the feet (`soles` of summary.json).
+nlohmann::ordered_json SolesJson(const CalibrationRun& run);
+
 }  // namespace elastocal

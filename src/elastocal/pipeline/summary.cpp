@@ -156,6 +156,7 @@ void AddStance(const CalibrationRun& run, Json& json) {
   const CalibrationResult& result = run.comparison.largest();
   const Json legs = LegsJson(run);
   if (!legs.empty()) json["legs"] = legs;
+  if (!run.soles.empty()) json["soles"] = SolesJson(run);
   json["loose_footings"] = Json::array();
   for (const LooseFooting& footing : result.loose_footings) {
     json["loose_footings"].push_back({{"posture", footing.posture},

@@ -98,11 +98,13 @@ Measurements ReadFolders(const std::vector<fs::path>& folders, const Project& pr
     if (purpose == ReadFor::kCalibration) RefuseWithoutCalibration(read);
     std::swap(read.calibration, read.validation);
   }
+  Measurements measured;
   for (Recording* recording : {&read.calibration, &read.validation}) {
     NoteApproach(*recording);
+    const std::vector<FootRest> rests = FindFootRests(project.tree, project.markers, *recording);
+    measured.foot_rests.insert(measured.foot_rests.end(), rests.begin(), rests.end());
     HideClosedChains(project.tree, project.markers, *recording);
   }
-  Measurements measured;
   measured.trials = std::move(read.trials);
   measured.warnings = std::move(read.findings);
   const std::vector<std::string> seen = SeenMarkers(read.calibration);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/measurement/foot_rests.hpp"
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/measurement/trial_summary.hpp"
 #include "elastocal/project/project.hpp"
@@ -18,6 +19,8 @@ struct Measurements {
   Recording calibration;  ///< what parameters are estimated from; each of its markers is seen in it
   Recording validation;  ///< trials of other kinds, with the markers of `calibration`; may be empty
   std::vector<TrialSummary> trials;  ///< of recording folders: what was used of each trial
+  /// Of all trials, also of feet beside others, whose markers the recordings do not have.
+  std::vector<FootRest> foot_rests;
   /// True pose of the waist in each posture of `calibration` and `validation`, in the frame of the
   /// cameras, where a simulation wrote it. Empty for a posture table.
   std::vector<std::optional<Transform>> calibration_truth, validation_truth;

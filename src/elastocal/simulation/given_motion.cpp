@@ -22,6 +22,11 @@ std::string PlaceOf(const JointMotion& motion, int sample) {
                              : motion.source + ":" + std::to_string(motion.line[sample]) + ": ";
 }
 
+void MoveToFront(int foot, std::vector<int>& support) {
+  const auto at = std::find(support.begin(), support.end(), foot);
+  std::rotate(support.begin(), at, at + 1);
+}
+
 /// Samples [first, last] during which the same feet stand.
 struct Stretch {
   int first = 0, last = 0;
@@ -49,8 +54,10 @@ class GivenMotionPlanner {
   std::vector<PlannedTrial> Plan() const {
     const std::vector<Stretch> stretches = Stretches();
     std::vector<PlannedTrial> trials;
+    std::vector<int> stayed;  // feet that have stood since the trial before
     for (const Stretch& stretch : stretches) {
       CheckFeet(stretch);
+      std::erase_if(stayed, [&](int foot) { return !Contains(stretch.support, foot); });
       PlannedTrial trial;
       trial.name = given_.name;
       if (stretches.size() > 1) trial.name += "_" + std::to_string(trials.size() + 1);
@@ -62,6 +69,8 @@ class GivenMotionPlanner {
       } else {
         FollowSamples(stretch, trial);
       }
+      if (motion_.time_s.size() > 0) StayOn(stayed, trials, trial);
+      stayed = stretch.support;
       trial.kind =
           given_.kind.value_or(trial.postures > 0 ? TrialKind::kCalibration : TrialKind::kSine);
       trials.push_back(std::move(trial));
@@ -111,6 +120,25 @@ class GivenMotionPlanner {
                          "': both cannot be on the floor; the column 'support' says which one is");
       }
     }
+  }
+
+  /// The robot plays the motion without a break: where one of these feet stands through two trials,
+  /// it stays. It becomes the first foot of both, which is the one that is flat on the floor. A
+  /// foot beside one that stays already cannot: the robot's errors put it elsewhere.
+  void StayOn(const std::vector<int>& feet, std::vector<PlannedTrial>& trials,
+              PlannedTrial& trial) const {
+    for (int foot : feet) {
+      PlannedTrial& before = trials.back();
+      if (IsBall(foot) || (before.stays && before.support[0] != foot)) continue;
+      MoveToFront(foot, before.support);
+      MoveToFront(foot, trial.support);
+      trial.stays = true;
+      return;
+    }
+  }
+
+  static bool Contains(const std::vector<int>& links, int link) {
+    return std::find(links.begin(), links.end(), link) != links.end();
   }
 
   bool IsBall(int link) const {

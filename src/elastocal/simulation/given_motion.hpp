@@ -29,6 +29,10 @@ struct GivenMotionOptions {
 ///
 /// Stretches in which only standing legs move (the weight is shifted) are skipped.
 ///
+/// A trajectory is played without a break: a flat foot that stands from one trial into the next one
+/// stays where it is, and is the first foot of `support` in both. Of a robot on both feet between
+/// two trials on one, only the foot that it shares with the trial before stays.
+///
 /// Throws InputError, naming the line, if feet on the floor move against each other, if nothing is
 /// left to play, and for a stretch of a trajectory that has only one sample.
 std::vector<PlannedTrial> PlanGivenMotion(const RobotTree& tree,

@@ -95,6 +95,28 @@ TEST_F(GivenMotion, EachStretchOfOneSupportIsATrial) {
   EXPECT_EQ(trials[1].postures, 3);
 }
 
+TEST_F(GivenMotion, AFootThatStandsThroughTwoTrialsStays) {
+  // On both feet, on the right one, on the left one, on both.
+  JointMotion motion = Samples({0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}, std::vector(8, 0.5));
+  motion.support = {{left_, right_}, {left_, right_}, {right_},        {right_},
+                    {left_},         {left_},         {left_, right_}, {left_, right_}};
+  EXPECT_FALSE(Plan(motion)[1].stays);  // postures are no trajectory
+  motion.time_s = Eigen::VectorXd::LinSpaced(8, 0.0, 1.4);
+  std::vector<PlannedTrial> trials = Plan(motion);
+  ASSERT_EQ(trials.size(), 4u);
+  EXPECT_EQ(trials[0].support, (std::vector<int>{right_, left_}));
+  EXPECT_EQ(trials[1].support, std::vector<int>{right_});
+  EXPECT_EQ(trials[3].support, (std::vector<int>{left_, right_}));
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(trials[i].stays, i == 1 || i == 3) << i;
+
+  // On one foot, on both, on the other: the second foot does not stay beside the first.
+  motion.support = {{right_}, {right_}, {left_, right_}, {left_, right_},
+                    {left_},  {left_},  {right_},        {right_}};
+  trials = Plan(motion);
+  EXPECT_EQ(trials[1].support, (std::vector<int>{right_, left_}));
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(trials[i].stays, i == 1) << i;
+}
+
 TEST_F(GivenMotion, AStretchInWhichOnlyWhatStandsMovesIsPassedOver) {
   JointMotion motion = Samples({0.1, 0.1, 0.1, 0.1}, {0.5, 0.5, 0.6, 0.8});
   motion.support = {{left_, right_}, {left_, right_}, {right_}, {right_}};

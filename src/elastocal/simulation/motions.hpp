@@ -68,6 +68,9 @@ struct PlannedTrial {
   std::vector<int> support;  ///< feet that stand on the floor: links
   Motion motion;
   int postures = 0;  ///< number of postures in which the robot rests
+  /// The first foot of `support` stands where it stood in the trial before: the robot was not put
+  /// down anew.
+  bool stays = false;
 };
 
 /// Plans the trials of the paper's sections 5 and 6 for any robot. Each chain from the waist has a

@@ -17,16 +17,17 @@ namespace elastocal {
 namespace {
 
 /// Draws the poses at which the robot is put down: near one place of the laboratory, roughly in one
-/// direction.
-std::vector<Transform> DrawPlaces(std::uint64_t seed, std::size_t trials) {
+/// direction. Where a foot stays, it is not put down anew.
+std::vector<Transform> DrawPlaces(std::uint64_t seed, const std::vector<PlannedTrial>& trials) {
   Random random(StreamSeed(seed, "place"));
   const double yaw = random.Uniform(-M_PI, M_PI);
   const Eigen::Vector3d centre(random.Uniform(-1.0, 1.0), random.Uniform(-1.0, 1.0), 0.0);
   std::vector<Transform> places;
-  for (std::size_t i = 0; i < trials; ++i) {
+  for (const PlannedTrial& trial : trials) {
     const Eigen::Vector3d shift(random.Uniform(-0.1, 0.1), random.Uniform(-0.1, 0.1), 0.0);
     places.push_back(Transform(Eigen::Translation3d(centre + shift)) *
                      RotZ(yaw + random.Uniform(-0.1, 0.1)));
+    if (trial.stays) places.back() = places[places.size() - 2];
   }
   return places;
 }
@@ -115,7 +116,7 @@ VirtualExperiment PrepareExperiment(const DescribedRobot& described,
     throw InputError("robot '" + described.tree.name + "' has no legs to stand on freely");
   }
   CheckFaults(options.faults, experiment.robot, experiment.clusters, experiment.trials);
-  experiment.T_camera_world = DrawPlaces(options.seed, experiment.trials.size());
+  experiment.T_camera_world = DrawPlaces(options.seed, experiment.trials);
   const PostureSampler sampler(described.tree, legs, options.motion.postures,
                                StreamSeed(options.seed, "stand"));
   for (const Leg& leg : legs) {

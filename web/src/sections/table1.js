@@ -125,6 +125,24 @@ function legsTable(legs) {
   });
 }
 
+/** What gives way between the markers of a foot and the floor; null where no leg stood. */
+function solesTable(soles) {
+  if (soles.length === 0) return null;
+  const cell = (sole) => {
+    if (sole.told) return [significant(sole.compliance_um_per_n), h('span', {class: 'sd'}, ` ± ${significant(sole.sd_um_per_n, 2)}`)];
+    return h('span', {class: 'held'}, sole.most_um_per_n === null ? 'not told' : `not told, < ${significant(sole.most_um_per_n, 2)}`);
+  };
+  return figure({
+    title: 'Springs below the markers of the feet',
+    note: 'How far the markers of a foot sink by the load on its sole, ± its standard deviation. It shows where a foot stays while its load changes: between a trial on both feet and one on that foot, without setting it down anew. The torques of both legs say how the feet share the weight.',
+    body: table({caption: 'Springs below the markers of the feet',
+      columns: [{text: 'Leg'}, {text: 'Compliance', unit: 'µm/N', number: true}, {text: 'Changes of load', number: true}],
+      rows: soles.map((sole) => [sole.leg.replaceAll('_', ' '), cell(sole), String(sole.changes)])}),
+    data: {name: 'soles.csv', text: () => toCsv(['leg', 'compliance_um_per_n', 'sd_um_per_n', 'most_um_per_n', 'told', 'changes'],
+      soles.map((sole) => [sole.leg, sole.compliance_um_per_n, sole.sd_um_per_n, sole.most_um_per_n, String(sole.told), sole.changes]))},
+  });
+}
+
 /** A name that may go on in a second line before the kind, for narrow windows. */
 const breakable = (name) => h('span', {}, splitName(name).owner, h('wbr'), `.${splitName(name).kind}`);
 
@@ -182,5 +200,5 @@ export function table1Section(report) {
       title: 'Elasticity',
       note: 'The compliance c says how far a joint gives way under load: c_z about its axis, c_x and c_y across it; c₀ how far the root link gives way up to a joint on it, about its own origin and axes. The inverse K of a compliance is the stiffness; it is shown where the 95 % interval of the compliance excludes a rigid joint.',
       body: holders[1].at, data: {name: 'elasticity.csv', text: () => csv(summary.parameters.filter((p) => /\.compliance_/.test(p.name)))},
-    }), causesTable(summary.parameters, legNames), legs.length > 0 && legsTable(legs), externals(summary.parameters, legNames));
+    }), causesTable(summary.parameters, legNames), legs.length > 0 && legsTable(legs), solesTable(summary.soles ?? []), externals(summary.parameters, legNames));
 }

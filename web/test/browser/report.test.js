@@ -239,6 +239,13 @@ test('the stiffness of a leg has its interval, or is unknown', async () => {
   assert.deepEqual(problems, []);
 });
 
+test('the spring of a sole has its deviation, or is not told', async () => {
+  const {page, problems} = await keptPage(sample);
+  const rows = await page.$$eval('[aria-label="Springs below the markers of the feet"] tbody tr', (all) => all.map((row) => [...row.cells].map((cell) => cell.innerText)));
+  assert.deepEqual(rows, [['leg left', '0.742 ± 0.041', '3'], ['leg right', 'not told', '0']]);
+  assert.deepEqual(problems, []);
+});
+
 test('nine equal warnings are one line with the names, and fold out', async () => {
   const {page, problems} = await keptPage(sample);
   const lines = await page.$$eval('#findings .words.state- > ul > li', (all) => all.map((li) => li.firstChild.textContent + (li.querySelector(':scope > .others')?.textContent ?? '')));

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/calibration/sole_springs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "elastocal/math/statistics.hpp"
+#include "elastocal/math/transform.hpp"
+#include "elastocal/robot/statics.hpp"
+
+namespace elastocal {
+namespace {
+
+constexpr double kStaysWithin = 0.3e-3;            // m
+constexpr double kTurnsLess = 0.3 * M_PI / 180.0;  // rad
+constexpr double kLeastChange = 0.2;               // of the weight: less is no change of load
+constexpr double kLoadShare = 0.05;                // to which loads are known
+
+/// Where the estimate has markers in the link of their foot, m, columns; NaN: it does not have
+/// them.
+Eigen::Matrix3Xd PlacesInLink(const CalibrationResult& result, const Geometry& geometry, int link,
+                              const std::vector<std::string>& markers) {
+  Eigen::Matrix3Xd places =
+      Eigen::Matrix3Xd::Constant(3, static_cast<Eigen::Index>(markers.size()), NAN);
+  for (std::size_t k = 0; k < markers.size(); ++k) {
+    const auto marker = std::ranges::find(result.model.markers, markers[k], &Marker::name);
+    if (marker == result.model.markers.end()) continue;
+    const auto m = static_cast<int>(marker - result.model.markers.begin());
+    places.col(static_cast<Eigen::Index>(k)) =
+        PlaceMarker(result.model, geometry, m, link).position;
+  }
+  return places;
+}
+
+/// How a foot moved: of its link's origin, m, and by how much it turned, rad.
+struct FootMotion {
+  Eigen::Vector3d shift;
+  double turn = 0.0;
+};
+
+/// By the markers that were seen both times; nothing where these tell no pose, or are no longer
+/// where they were among each other. Columns are markers.
+std::optional<FootMotion> MotionBetween(const Eigen::Matrix3Xd& in_link,
+                                        const Eigen::Matrix3Xd& before,
+                                        const Eigen::Matrix3Xd& after) {
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index k = 0; k < in_link.cols(); ++k) {
+    if ((in_link.col(k) + before.col(k) + after.col(k)).allFinite()) seen.push_back(k);
+  }
+  const Eigen::Matrix3Xd places = in_link(Eigen::all, seen), from = before(Eigen::all, seen),
+                         to = after(Eigen::all, seen);
+  if (seen.size() < 3 || !TellPose(places)) return std::nullopt;
+  const Transform T_after_before = FitRigid(from, to);
+  const double bent = (T_after_before * from - to).colwise().norm().maxCoeff();
+  if (bent > kStaysWithin) return std::nullopt;
+  const Eigen::Vector3d origin = FitRigid(places, from).translation();
+  return FootMotion{T_after_before * origin - origin, RotationAngle(T_after_before.linear())};
+}
+
+bool StaysWithin(const FootMotion& motion, const Eigen::Vector3d& up) {
+  const Eigen::Vector3d along = motion.shift - up.dot(motion.shift) * up;
+  return along.norm() < kStaysWithin && motion.turn < kTurnsLess;
+}
+
+/// What a foot does from the beginning of its stay on, by trial.
+struct Stay {
+  std::vector<Eigen::Vector3d> shift;  ///< along two directions of the floor, and up, m
+  std::vector<double> share;           ///< of the weight
+};
+
+/// The stays of one foot.
+std::vector<Stay> FindStays(const CalibrationResult& result, const std::vector<FootRest>& rests,
+                            const Eigen::Vector3d& up, int link) {
+  const Geometry geometry = ApplyErrors(result.model, result.delta);
+  Eigen::Matrix3d axes;
+  axes << up.unitOrthogonal().transpose(), up.cross(up.unitOrthogonal()).transpose(),
+      up.transpose();
+  std::vector<Stay> stays;
+  const FootRest* begin = nullptr;   // of the stay
+  const FootRest* before = nullptr;  // the trial before this one
+  for (const FootRest& rest : rests) {
+    if (rest.link != link) continue;
+    const Eigen::Matrix3Xd places = PlacesInLink(result, geometry, link, rest.markers);
+    const auto within = MotionBetween(places, rest.at_first, rest.at_last);
+    const bool follows =
+        before != nullptr && before->session == rest.session && before->trial + 1 == rest.trial;
+    before = &rest;
+    if (!within || !StaysWithin(*within, up) || !std::isfinite(rest.share)) {
+      begin = nullptr;
+      continue;
+    }
+    std::optional<FootMotion> motion;
+    if (follows && begin != nullptr) motion = MotionBetween(places, begin->at, rest.at);
+    if (!motion || !StaysWithin(*motion, up)) {
+      begin = &rest;
+      stays.push_back({});
+      motion = FootMotion{Eigen::Vector3d::Zero()};
+    }
+    stays.back().shift.emplace_back(axes * motion->shift);
+    stays.back().share.push_back(rest.share);
+  }
+  return stays;
+}
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+/// Sums of squares over the stays of a foot, each about its own mean.
+struct Sums {
+  double loads = 0.0, sinking = 0.0, heights = 0.0;  ///< of shares of the weight, with m, m^2
+  double along = 0.0;                                ///< of both directions of the floor, m^2
+  int changes = 0;                                   ///< trials but the first of each stay
+
+  /// Whether the load changed enough at least once, about the mean of two.
+  bool Loaded() const { return loads > 0.5 * kLeastChange * kLeastChange; }
+};
+
+Sums SumsOf(const std::vector<Stay>& stays) {
+  Sums sums;
+  for (const Stay& stay : stays) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& shift : stay.shift) mean += shift;
+    mean /= static_cast<double>(stay.shift.size());
+    const double share = Mean(stay.share);
+    for (std::size_t i = 0; i < stay.share.size(); ++i) {
+      const Eigen::Vector3d off = stay.shift[i] - mean;
+      const double more = stay.share[i] - share;
+      sums.loads += more * more;
+      sums.sinking -= more * off.z();
+      sums.heights += off.z() * off.z();
+      sums.along += off.head<2>().squaredNorm();
+    }
+    sums.changes += static_cast<int>(stay.share.size()) - 1;
+  }
+  return sums;
+}
+
+}  // namespace
+
+double SoleSpring::most() const { return std::max(0.0, compliance) + interval_factor * sd; }
+
+std::vector<SoleSpring> EstimateSoleSprings(const CalibrationResult& result,
+                                            const std::vector<FootRest>& rests,
+                                            const Eigen::Vector3d& gravity) {
+  const double weight = TotalMass(result.model.tree) * gravity.norm();
+  std::vector<SoleSpring> springs;
+  std::vector<Sums> feet;
+  double squares = 0.0;
+  int freedom = 0;
+  for (const SupportLeg& leg : result.model.legs) {
+    const Sums sums = SumsOf(FindStays(result, rests, -gravity.normalized(), leg.link));
+    squares += sums.along + sums.heights;
+    if (sums.Loaded()) squares -= sums.sinking * sums.sinking / sums.loads;
+    freedom += 3 * sums.changes - (sums.Loaded() ? 1 : 0);
+    feet.push_back(sums);
+    springs.push_back({.leg = leg.name});
+  }
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    if (!feet[i].Loaded()) continue;
+    SoleSpring& spring = springs[i];
+    spring.changes = feet[i].changes;
+    spring.compliance = feet[i].sinking / feet[i].loads / weight;
+    const double scatter = std::sqrt(squares / freedom / feet[i].loads) / weight;
+    spring.sd = std::hypot(scatter, kLoadShare * spring.compliance);
+    spring.interval_factor = StudentQuantile(0.975, freedom);
+  }
+  return springs;
+}
+
+}  // namespace elastocal

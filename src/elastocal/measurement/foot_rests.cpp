@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/measurement/foot_rests.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/math/statistics.hpp"
+#include "elastocal/robot/leg_load.hpp"
+#include "elastocal/robot/statics.hpp"
+
+namespace elastocal {
+namespace {
+
+/// Columns of the recording's markers on the body of a link.
+std::vector<int> MarkersOnBody(const RobotTree& tree, const std::vector<Marker>& markers, int link,
+                               const Recording& recording) {
+  std::vector<int> found;
+  for (int m = 0; m < recording.marker_count(); ++m) {
+    const auto marker = std::ranges::find(markers, recording.marker_names[Size(m)], &Marker::name);
+    if (marker == markers.end()) continue;
+    if (tree.links[Size(marker->link)].body == tree.links[Size(link)].body) found.push_back(m);
+  }
+  return found;
+}
+
+Eigen::Matrix3Xd MostlyAt(const Recording& recording, const std::vector<int>& postures,
+                          const std::vector<int>& markers) {
+  Eigen::Matrix3Xd at(3, static_cast<Eigen::Index>(markers.size()));
+  for (std::size_t k = 0; k < markers.size(); ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<double> values;
+      for (int i : postures) {
+        if (Seen(recording, i, markers[k])) {
+          values.push_back(MarkerPosition(recording, i, markers[k])[axis]);
+        }
+      }
+      at(axis, static_cast<Eigen::Index>(k)) = Median(values);
+    }
+  }
+  return at;
+}
+
+/// All feet of a recording as legs, without errors; its reference frame is that of the root link.
+ErrorModel LegsOf(const RobotTree& tree, const std::vector<Marker>& markers,
+                  const Recording& recording) {
+  std::set<int> feet;
+  for (const Trial& trial : recording.trials) {
+    feet.insert(trial.support.begin(), trial.support.end());
+  }
+  Elasticity elasticity;
+  for (int link : feet) elasticity.legs.push_back({tree.links[Size(link)].name, link});
+  return MakeErrorModel(tree, markers, {}, elasticity);
+}
+
+/// By how much a foot is pressed on the floor in a posture, N: what the torques of its leg's joints
+/// say that the waist puts on the leg (eq. 6), and the leg's own weight. NaN without one of them.
+double PressOn(const ErrorModel& model, const Geometry& geometry, int leg, int posture,
+               const Recording& recording) {
+  const SupportLeg& on = model.legs[Size(leg)];
+  const Eigen::VectorXd q = recording.q.row(posture).transpose();
+  const LegPosture placed = PlaceLeg(model, geometry, q, leg);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(q.size());
+  const Eigen::Vector3d up_foot =
+      LinkTransforms(model.tree, zero)[Size(on.link)].linear().row(2).transpose();
+  const Eigen::Vector3d gravity =
+      -kGravity.norm() * (placed.T_ref_link[Size(on.link)].linear() * up_foot);
+  const Eigen::VectorXd torques = recording.torques.row(posture)(on.joints).transpose();
+  const LegLoad load = LoadFromTorques(placed, torques - LegWeightTorques(model, placed, gravity));
+  if (load.status != LegLoadStatus::kReliable) return NAN;
+  const double but_leg = LoadFromStatics(model, placed, gravity).head<3>().norm();
+  return TotalMass(model.tree) * kGravity.norm() - but_leg - up_foot.dot(load.wrench.head<3>());
+}
+
+/// Share of the weight on the foot `link` through a trial, see FootRest.
+double ShareOfWeight(const ErrorModel& model, const Geometry& geometry, const Trial& trial,
+                     int link, const std::vector<int>& postures, const Recording& recording) {
+  if (trial.support.size() == 1) return 1.0;
+  if (recording.torques.rows() == 0) return NAN;
+  double sum = 0.0;
+  int count = 0;
+  for (int i : postures) {
+    double own = 0.0, all = 0.0;
+    for (int leg = 0; leg < model.leg_count(); ++leg) {
+      const int foot = model.legs[Size(leg)].link;
+      if (std::ranges::find(trial.support, foot) == trial.support.end()) continue;
+      const double press = PressOn(model, geometry, leg, i, recording);
+      all += press;
+      if (foot == link) own = press;
+    }
+    if (!std::isfinite(own / all)) continue;
+    sum += own / all;
+    ++count;
+  }
+  return count > 0 ? sum / count : NAN;
+}
+
+}  // namespace
+
+std::vector<FootRest> FindFootRests(const RobotTree& tree, const std::vector<Marker>& markers,
+                                    const Recording& recording) {
+  std::vector<std::vector<int>> postures(recording.trials.size());
+  for (std::size_t i = 0; i < recording.trial.size(); ++i) {
+    postures[Size(recording.trial[i])].push_back(static_cast<int>(i));
+  }
+  std::vector<FootRest> rests;
+  const ErrorModel model = LegsOf(tree, markers, recording);
+  Geometry geometry = ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
+  PlaceWaist(Transform::Identity(), Vector6d::Zero(), geometry);
+  for (std::size_t t = 0; t < postures.size(); ++t) {
+    if (postures[t].empty()) continue;
+    const Trial& trial = recording.trials[t];
+    const auto middle = postures[t].begin() + static_cast<std::ptrdiff_t>(postures[t].size() / 2);
+    for (int link : trial.support) {
+      const std::vector<int> on = MarkersOnBody(tree, markers, link, recording);
+      FootRest rest{.link = link, .session = trial.session, .trial = static_cast<int>(t)};
+      for (int m : on) rest.markers.push_back(recording.marker_names[Size(m)]);
+      rest.at = MostlyAt(recording, postures[t], on);
+      rest.at_first = MostlyAt(recording, {postures[t].begin(), middle}, on);
+      rest.at_last = MostlyAt(recording, {middle, postures[t].end()}, on);
+      rest.share = ShareOfWeight(model, geometry, trial, link, postures[t], recording);
+      rests.push_back(std::move(rest));
+    }
+  }
+  return rests;
+}
+
+}  // namespace elastocal
