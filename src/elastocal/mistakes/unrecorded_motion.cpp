@@ -23,9 +23,9 @@ namespace {
 
 constexpr double kLeftByMotion = 0.5;  // of the error with the joint at rest
 constexpr double kElsewhere = M_PI / 180.0, kElsewhereSlide = 2e-3;
-constexpr double kMostTurned = M_PI, kMostSlid = 1.0;  // of a joint without limits
-constexpr int kPlaces = 72;                            // of a joint, to begin with
-constexpr double kShareOfPlaces = 0.25;                // of the distance of two of these
+constexpr double kFurthestTurn = M_PI, kFurthestSlide = 1.0;  // of a joint without limits
+constexpr int kPlaces = 72;                                   // of a joint, to begin with
+constexpr double kShareOfPlaces = 0.25;                       // of the distance of two of these
 constexpr int kStepsToNearest = 3;
 constexpr double kShownCurvature = 0.01;  // of the largest: the joint is shown
 constexpr int kFits = 2;  // the first one has the markers where a joint at rest would
@@ -51,7 +51,7 @@ std::vector<int> NotRecorded(const ErrorModel& model, const Recording& recording
 /// Positions of a coordinate over all that its joint can do; empty where that is nothing.
 Eigen::VectorXd Places(const RobotTree& tree, int coordinate) {
   const JointLimits& limits = JointOfCoordinate(tree, coordinate).limits;
-  const double most = Slides(tree, coordinate) ? kMostSlid : kMostTurned;
+  const double most = Slides(tree, coordinate) ? kFurthestSlide : kFurthestTurn;
   const double lower = std::max(-most, limits.lower), upper = std::min(most, limits.upper);
   if (!(lower < upper)) return {};
   return Eigen::VectorXd::LinSpaced(kPlaces, lower, upper);
