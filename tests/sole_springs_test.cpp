@@ -132,6 +132,13 @@ TEST_F(PlayedSoles, OfFirmFeetNoneIsTold) {
   }
 }
 
+// A crane carries a part of it, or the torques are wrong.
+TEST_F(PlayedSoles, TorquesThatSayAnotherWeightTellNothing) {
+  Recording recording = Record(Prepare({}));
+  recording.torques *= 0.6;
+  for (const SoleSpring& sole : Estimate(recording)) EXPECT_TRUE(std::isinf(sole.sd)) << sole.leg;
+}
+
 TEST_F(PlayedSoles, ARobotThatIsPutDownAnewTellsNothing) {
   VirtualExperiment experiment = Prepare({});
   for (std::size_t t = 1; t < experiment.trials.size(); ++t) {

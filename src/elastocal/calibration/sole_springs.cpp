@@ -13,6 +13,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kStaysWithin = 0.3e-3;            // m
+constexpr double kSinksLess = 5e-3;                // m: else it was lifted
 constexpr double kTurnsLess = 0.3 * M_PI / 180.0;  // rad
 constexpr double kLeastChange = 0.2;               // of the weight: less is no change of load
 constexpr double kLoadShare = 0.05;                // to which loads are known
@@ -60,7 +61,8 @@ std::optional<FootMotion> MotionBetween(const Eigen::Matrix3Xd& in_link,
 
 bool StaysWithin(const FootMotion& motion, const Eigen::Vector3d& up) {
   const Eigen::Vector3d along = motion.shift - up.dot(motion.shift) * up;
-  return along.norm() < kStaysWithin && motion.turn < kTurnsLess;
+  return along.norm() < kStaysWithin && std::abs(up.dot(motion.shift)) < kSinksLess &&
+         motion.turn < kTurnsLess;
 }
 
 /// What a foot does from the beginning of its stay on, by trial.
@@ -114,9 +116,9 @@ struct Sums {
   double loads = 0.0, sinking = 0.0, heights = 0.0;  ///< of shares of the weight, with m, m^2
   double along = 0.0;                                ///< of both directions of the floor, m^2
   int changes = 0;                                   ///< trials but the first of each stay
+  double change = 0.0;                               ///< the largest of a stay, of the weight
 
-  /// Whether the load changed enough at least once, about the mean of two.
-  bool Loaded() const { return loads > 0.5 * kLeastChange * kLeastChange; }
+  bool Loaded() const { return change > kLeastChange; }
 };
 
 Sums SumsOf(const std::vector<Stay>& stays) {
@@ -135,6 +137,8 @@ Sums SumsOf(const std::vector<Stay>& stays) {
       sums.along += off.head<2>().squaredNorm();
     }
     sums.changes += static_cast<int>(stay.share.size()) - 1;
+    const auto [least, most] = std::ranges::minmax_element(stay.share);
+    sums.change = std::max(sums.change, *most - *least);
   }
   return sums;
 }
@@ -161,12 +165,11 @@ std::vector<SoleSpring> EstimateSoleSprings(const CalibrationResult& result,
   }
   for (std::size_t i = 0; i < feet.size(); ++i) {
     if (!feet[i].Loaded()) continue;
-    SoleSpring& spring = springs[i];
-    spring.changes = feet[i].changes;
-    spring.compliance = feet[i].sinking / feet[i].loads / weight;
-    const double scatter = std::sqrt(squares / freedom / feet[i].loads) / weight;
-    spring.sd = std::hypot(scatter, kLoadShare * spring.compliance);
-    spring.interval_factor = StudentQuantile(0.975, freedom);
+    const double compliance = feet[i].sinking / feet[i].loads / weight;
+    const double scatter = std::sqrt(std::max(0.0, squares) / freedom / feet[i].loads) / weight;
+    const double sd = std::hypot(scatter, kLoadShare * compliance);
+    if (!(std::abs(compliance) <= kSoftestSole && sd > 0.0)) continue;
+    springs[i] = {springs[i].leg, feet[i].changes, compliance, sd, StudentQuantile(0.975, freedom)};
   }
   return springs;
 }

@@ -14,6 +14,8 @@ namespace elastocal {
 // What gives way below these markers (a sole of rubber, a force sensor, a soft floor) shows only
 // where one foot, without being set down anew, carries now more and now less.
 
+inline constexpr double kSoftestSole = 1e-4;  ///< m/N: a person sinks by 80 mm
+
 /// How much the markers of a foot sink under the load on its sole.
 struct SoleSpring {
   std::string leg;  ///< of the model
@@ -33,7 +35,7 @@ struct SoleSpring {
 /// m/s^2.
 ///
 /// A foot stays from one trial of a folder to the next if it supports the robot in both and its
-/// markers, as one body, are within 0.3 mm and 0.3 degrees of where they were, height aside. The
+/// markers, as one body, are within 0.3 mm and 0.3 degrees of where they were (5 mm in height). The
 /// height of its link's origin is then a constant less compliance times load (least squares), and
 /// the load is its share of the weight of the robot as described.
 ///

@@ -251,12 +251,12 @@ void MarkLegs(const RobotTree& tree, const std::vector<Leg>& legs, RuntimeModel&
 void AddSoles(const StoredCalibration& calibration, RuntimeModel& model) {
   const double total = std::accumulate(model.mass.begin(), model.mass.end(), 0.0);
   for (const SoleSpring& sole : calibration.soles) {
+    if (!sole.told()) continue;
     const auto name = std::ranges::find(model.foot_names, sole.leg);
     if (name == model.foot_names.end()) {
       throw InputError(calibration.source + ": soles: the robot has no leg '" + sole.leg + "'" +
                        DidYouMean(sole.leg, model.foot_names));
     }
-    if (!sole.told()) continue;
     const int f = static_cast<int>(name - model.foot_names.begin());
     double leg = 0.0;
     for (std::size_t body = 0; body < model.mass.size(); ++body) {

@@ -13,7 +13,6 @@ namespace elastocal {
 namespace {
 
 constexpr const char* kSoleUnit = "m/N";
-constexpr double kSoftest = 1e-4;  // m/N: a person sinks by 80 mm
 constexpr int kMostLoadChanges = 1000000;
 
 SoleSpring ReadSpring(const YamlValue& item) {
@@ -21,7 +20,7 @@ SoleSpring ReadSpring(const YamlValue& item) {
   spring.leg = item.Get("leg").Text();
   item.Get("unit").Expect(item.Get("unit").Text() == kSoleUnit, std::string(kSoleUnit));
   spring.compliance = item.Get("value").Number(
-      {.lower = -kSoftest, .upper = kSoftest, .with_lower = true, .with_upper = true});
+      {.lower = -kSoftestSole, .upper = kSoftestSole, .with_lower = true, .with_upper = true});
   spring.sd = item.Get("sd").Number();
   item.Get("sd").Expect(spring.sd > 0.0, "a number above 0");
   spring.interval_factor = item.Get("interval_95_in_sd").Number();

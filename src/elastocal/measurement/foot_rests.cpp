@@ -13,6 +13,8 @@
 namespace elastocal {
 namespace {
 
+constexpr double kWeightKnown = 0.2;  // of it: masses of a description, gains of sensors
+
 /// Columns of the recording's markers on the body of a link.
 std::vector<int> MarkersOnBody(const RobotTree& tree, const std::vector<Marker>& markers, int link,
                                const Recording& recording) {
@@ -59,6 +61,7 @@ ErrorModel LegsOf(const RobotTree& tree, const std::vector<Marker>& markers,
 double PressOn(const ErrorModel& model, const Geometry& geometry, int leg, int posture,
                const Recording& recording) {
   const SupportLeg& on = model.legs[Size(leg)];
+  if (on.joints.size() < 6) return NAN;  // their torques do not tell the load
   const Eigen::VectorXd q = recording.q.row(posture).transpose();
   const LegPosture placed = PlaceLeg(model, geometry, q, leg);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(q.size());
@@ -73,13 +76,17 @@ double PressOn(const ErrorModel& model, const Geometry& geometry, int leg, int p
   return TotalMass(model.tree) * kGravity.norm() - but_leg - up_foot.dot(load.wrench.head<3>());
 }
 
-/// Share of the weight on the foot `link` through a trial, see FootRest.
-double ShareOfWeight(const ErrorModel& model, const Geometry& geometry, const Trial& trial,
-                     int link, const std::vector<int>& postures, const Recording& recording) {
-  if (trial.support.size() == 1) return 1.0;
-  if (recording.torques.rows() == 0) return NAN;
-  double sum = 0.0;
-  int count = 0;
+/// What presses on a foot and on all that support the robot, mean over the postures in which the
+/// torques say both, N.
+struct Pressed {
+  double own = 0.0, all = 0.0;
+  int postures = 0;
+};
+
+Pressed PressedOn(const ErrorModel& model, const Geometry& geometry, const Trial& trial, int link,
+                  const std::vector<int>& postures, const Recording& recording) {
+  Pressed mean;
+  if (recording.torques.rows() == 0) return mean;
   for (int i : postures) {
     double own = 0.0, all = 0.0;
     for (int leg = 0; leg < model.leg_count(); ++leg) {
@@ -89,11 +96,26 @@ double ShareOfWeight(const ErrorModel& model, const Geometry& geometry, const Tr
       all += press;
       if (foot == link) own = press;
     }
-    if (!std::isfinite(own / all)) continue;
-    sum += own / all;
-    ++count;
+    if (!std::isfinite(own) || !std::isfinite(all)) continue;
+    mean.own += own;
+    mean.all += all;
+    ++mean.postures;
   }
-  return count > 0 ? sum / count : NAN;
+  if (mean.postures == 0) return mean;
+  mean.own /= mean.postures;
+  mean.all /= mean.postures;
+  return mean;
+}
+
+/// Share of the weight on the foot `link` through a trial, see FootRest.
+double ShareOfWeight(const ErrorModel& model, const Geometry& geometry, const Trial& trial,
+                     int link, const std::vector<int>& postures, const Recording& recording) {
+  const Pressed pressed = PressedOn(model, geometry, trial, link, postures, recording);
+  if (pressed.postures == 0) return trial.support.size() == 1 ? 1.0 : NAN;
+  const double weight = TotalMass(model.tree) * kGravity.norm();
+  if (!(std::abs(pressed.all - weight) < kWeightKnown * weight)) return NAN;
+  const double share = pressed.own / pressed.all;
+  return share >= 0.0 && share <= 1.0 ? share : NAN;
 }
 
 }  // namespace

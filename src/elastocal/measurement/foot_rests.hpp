@@ -13,10 +13,12 @@ namespace elastocal {
 struct FootRest {
   int link = 0;
   int session = 0;  ///< the folder that the trial is from
-  int trial = 0;    ///< its number in its recording
+  int trial = 0;    ///< its number among all trials read, whatever they were recorded for
   /// Share of the weight on the foot, mean over the postures: all of it if it stands alone; beside
   /// others, as the torques of the legs' joints say (eq. 6). NaN: a joint of a leg on the floor has
-  /// no torque, or a knee is straight, in every posture.
+  /// no torque, a leg has fewer than six joints, or a knee is straight, in every posture; or the
+  /// torques of all feet say another weight than the description (by a fifth): something else
+  /// carries the robot, or they are wrong.
   double share = 1.0;
   std::vector<std::string> markers = {};  ///< on the body of the foot
   /// Where each of them mostly was (medians), m, columns; NaN where not seen: in the whole trial,

@@ -18,6 +18,7 @@ namespace {
 constexpr double kQuarter = std::numbers::pi / 2.0;
 constexpr double kNearQuarters = 0.2;    // of a quarter of a turn: an assembly with another zero
 constexpr double kAsWellAsTurned = 1.1;  // of what the offsets leave that no robot has
+constexpr double kLeastRange = 0.05;     // rad or m: of a joint whose sign can be told
 constexpr std::size_t kMostTurned = 6;
 
 LogAlternative WithOtherZero(const Recording& recording, const RobotTree& tree, int coordinate,
@@ -64,7 +65,7 @@ std::vector<LogAlternative> Explanations(const Recording& recording, const Robot
   }
   for (const int c : Neighbours(tree, turned.coordinate)) {
     const auto column = recording.q.col(c);
-    if (!(column.maxCoeff() > column.minCoeff())) continue;
+    if (!(column.maxCoeff() - column.minCoeff() > kLeastRange)) continue;
     all.push_back(WithOtherSign(recording, tree, c));
   }
   return all;
@@ -86,18 +87,18 @@ std::vector<LogAlternative> OtherZeros(const Recording& recording, const RobotTr
 }
 
 std::vector<LogAlternative> FindTurnedZeros(const Project& project, const ErrorModel& model,
-                                            const Recording& recording, const OffsetsFit& given) {
+                                            const Recording& recording, OffsetsFit& fit) {
   std::vector<LogAlternative> steps;
-  if (!project.tree.linkages.empty() || given.turned.size() > kMostTurned) return steps;
+  if (!project.tree.linkages.empty() || fit.turned.size() > kMostTurned) return steps;
   Recording current = recording;
-  OffsetsFit fit = given;
+  const double error = fit.error;
   while (!fit.turned.empty()) {
     LogAlternative best;
     OffsetsFit best_fit;
     for (LogAlternative& one : Explanations(current, project.tree, fit.turned.front())) {
       const OffsetsFit without = FitOffsets(project, model, one.recording);
       if (without.turned.size() >= fit.turned.size()) continue;
-      if (!(without.error < kAsWellAsTurned * given.error)) continue;
+      if (!(without.error < kAsWellAsTurned * error)) continue;
       if (!best.what.empty() && without.off_project >= best_fit.off_project) continue;
       best = std::move(one);
       best_fit = without;

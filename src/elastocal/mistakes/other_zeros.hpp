@@ -13,12 +13,13 @@ namespace elastocal {
 std::vector<LogAlternative> OtherZeros(const Recording& recording, const RobotTree& tree,
                                        const std::vector<int>& joints);
 
-/// What a table has wrong whose markers are explained by joint offsets (`given`) that no robot has:
+/// What a table has wrong whose markers are explained by joint offsets (`fit`) that no robot has:
 /// a joint with another zero, or the sign of a joint or of its neighbours, which half a turn of the
 /// joint before explains as well. Of several, the one with which the markers are where the project
-/// has them. Each is undone, until offsets of robots explain the table as well as `given`; empty
-/// where they do so without any, and where nothing achieves it.
+/// has them. Each is undone, until offsets of robots explain the table as well as before; empty
+/// where they do so without any, and where nothing achieves it. `fit` becomes that of the table
+/// without these mistakes.
 std::vector<LogAlternative> FindTurnedZeros(const Project& project, const ErrorModel& model,
-                                            const Recording& recording, const OffsetsFit& given);
+                                            const Recording& recording, OffsetsFit& fit);
 
 }  // namespace elastocal

@@ -281,13 +281,15 @@ class PlainSearch {
   /// Mistakes that offsets explain which no robot has: they hardly show in how far the markers are.
   std::vector<Alternative> FindTurned() const {
     std::vector<Alternative> found;
-    const OffsetsFit with = FitOffsetsOf(given_);
-    if (!(with.error < kMostLeft)) return found;
-    for (LogAlternative& one : FindTurnedZeros(project_, given_.model, given_.recording, with)) {
+    OffsetsFit fit = FitOffsetsOf(given_);
+    const double with = fit.error;
+    if (!(with < kMostLeft)) return found;
+    for (LogAlternative& one : FindTurnedZeros(project_, given_.model, given_.recording, fit)) {
       one.what += fmt::format(
-          "; without that, markers are {:.3g} mm off with joint offsets "
-          "estimated, with it by errors that no robot has",
-          1e3 * with.error);
+          "; without that, markers are {:.3g} mm off with joint offsets estimated, with it {:.3g} "
+          "mm "
+          "by offsets that no robot has",
+          1e3 * fit.error, 1e3 * with);
       found.push_back(
           {std::move(one.what), std::move(one.name), given_.model, std::move(one.recording)});
     }

@@ -78,11 +78,13 @@ LogAlternative Exchanged(const Recording& recording, const RobotTree& tree, cons
 
 std::vector<LogAlternative> WholeLimbs(const Recording& recording, const Project& project) {
   const std::vector<Limb> limbs = LimbsOf(project);
+  const auto type_of = [&](int joint) { return project.tree.joints[Size(joint)].type; };
   std::vector<LogAlternative> all;
   for (std::size_t a = 0; a < limbs.size(); ++a) {
     all.push_back(Reversed(recording, project.tree, limbs[a]));
     for (std::size_t b = a + 1; b < limbs.size(); ++b) {
-      if (limbs[a].joints.size() != limbs[b].joints.size()) continue;
+      const bool alike = std::ranges::equal(limbs[a].joints, limbs[b].joints, {}, type_of, type_of);
+      if (!alike) continue;
       all.push_back(Exchanged(recording, project.tree, limbs[a], limbs[b]));
     }
   }

@@ -79,6 +79,14 @@ std::vector<std::optional<Transform>> TrueWaists(const std::vector<fs::path>& fo
   return waists;
 }
 
+/// Trials follow on each other in their folder, not in the recordings for calibration and for
+/// validation.
+int NumberAmong(const std::vector<TrialSummary>& trials, const Trial& trial) {
+  const auto found = std::ranges::find(
+      trials, trial.name, [](const TrialSummary& summary) { return summary.trial.name; });
+  return static_cast<int>(found - trials.begin());
+}
+
 [[noreturn]] void RefuseWithoutCalibration(const RecordingFolder& read) {
   std::string message = read.validation.source +
                         ": no trial of kind 'calibration' can be used, only such of other kinds, "
@@ -101,10 +109,14 @@ Measurements ReadFolders(const std::vector<fs::path>& folders, const Project& pr
   Measurements measured;
   for (Recording* recording : {&read.calibration, &read.validation}) {
     NoteApproach(*recording);
-    const std::vector<FootRest> rests = FindFootRests(project.tree, project.markers, *recording);
-    measured.foot_rests.insert(measured.foot_rests.end(), rests.begin(), rests.end());
+    for (FootRest& rest : FindFootRests(project.tree, project.markers, *recording)) {
+      rest.trial =
+          NumberAmong(read.trials, recording->trials[static_cast<std::size_t>(rest.trial)]);
+      measured.foot_rests.push_back(std::move(rest));
+    }
     HideClosedChains(project.tree, project.markers, *recording);
   }
+  std::ranges::stable_sort(measured.foot_rests, {}, &FootRest::trial);
   measured.trials = std::move(read.trials);
   measured.warnings = std::move(read.findings);
   const std::vector<std::string> seen = SeenMarkers(read.calibration);

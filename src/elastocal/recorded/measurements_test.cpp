@@ -145,6 +145,20 @@ TEST_F(MeasurementsTest, TheTruthOfATrialIsThatOfItsOwnFolder) {
   }
 }
 
+// Of which kind they are says nothing of which trial came after which.
+TEST_F(MeasurementsTest, FeetRestInTheOrderOfTheTrials) {
+  const std::string rest =
+      ", chain: left_leg, support: [right_sole], markers: a.tsv, joints: a.csv}";
+  folder_.Write("experiment.yaml", "trials: [{name: one, kind: calibration" + rest +
+                                       ", {name: two, kind: random" + rest +
+                                       ", {name: three, kind: calibration" + rest + "]");
+  std::vector<int> order;
+  for (const FootRest& foot : ReadMeasurements(project_, {folder_.path()}).foot_rests) {
+    order.push_back(foot.trial);
+  }
+  EXPECT_EQ(order, (std::vector<int>{0, 1, 2}));
+}
+
 TEST_F(MeasurementsTest, AJointThatNoLogHasIsNotRecorded) {
   WriteExperiment("calibration");
   JointLog log = ReadJointLog(folder_.path() / "a.csv", project_);

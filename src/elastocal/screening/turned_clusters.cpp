@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/screening/turned_clusters.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -61,6 +62,17 @@ double RmsDistance(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   return (a - b).norm() / std::sqrt(static_cast<double>(a.cols()));
 }
 
+/// Whether a marker on another body is beyond the joint: then it tells the joint's zero.
+bool IsToldBeyond(const ErrorModel& model, int joint) {
+  const RobotTree& tree = model.tree;
+  return std::ranges::any_of(model.markers, [&](const Marker& marker) {
+    int body = tree.links[Size(marker.link)].body;
+    if (body == joint + 1) return false;
+    while (body > joint + 1) body = tree.joints[Size(body - 1)].parent_body;
+    return body == joint + 1;
+  });
+}
+
 std::optional<TurnedCluster> TurnOf(const CalibrationResult& fit, const LabelCluster& cluster,
                                     const Eigen::Matrix3Xd& errors) {
   if (cluster.markers.size() < kFewestOfTurned) return std::nullopt;
@@ -68,6 +80,7 @@ std::optional<TurnedCluster> TurnOf(const CalibrationResult& fit, const LabelClu
   const int link = fit.model.markers[Size(cluster.markers.front())].link;
   const int joint = tree.links[Size(link)].body - 1;
   if (joint < 0 || tree.joints[Size(joint)].type != JointType::kRevolute) return std::nullopt;
+  if (tree.joints[Size(joint)].mimic || IsToldBeyond(fit.model, joint)) return std::nullopt;
   const PlacesOnJoint places = PlacesOf(fit, cluster.markers, errors);
   const double displaced = RmsDistance(places.project, places.estimated);
   const Eigen::Vector3d& axis = tree.joints[Size(joint)].axis;

@@ -20,7 +20,7 @@ struct TurnedCluster {
 /// Clusters of three markers or more that are 50 mm and more from where the project has them (rms),
 /// of which a turn by 20 degrees or more about their joint's axis leaves 0.3 at most. The joint's
 /// zero is another one then, or the project's places are: the markers of the last link of a limb
-/// fit either way.
+/// fit either way. Where markers beyond the cluster's link tell the zero, nothing is said.
 std::vector<TurnedCluster> FindTurnedClusters(const CalibrationResult& fit,
                                               const std::vector<LabelCluster>& clusters);
 
