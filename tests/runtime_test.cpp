@@ -147,7 +147,7 @@ TEST_F(Runtime, ASoleSinksByTheWholeWeight) {
     unknown.Forward(q, kNoTorque, 1u << leg);
     EXPECT_EQ(firm.root_pose().matrix(), unknown.root_pose().matrix());
   }
-  stored_.soles[0].leg = "leg_lefd";
+  stored_.soles[0] = {.leg = "leg_lefd", .changes = 2, .compliance = 1e-6, .sd = 1e-8};
   ExpectInputError([&] { Make(); }, {"soles", "leg_lefd", "leg_left"});
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -147,11 +148,17 @@ TEST_F(MeasurementsTest, TheTruthOfATrialIsThatOfItsOwnFolder) {
 
 // Of which kind they are says nothing of which trial came after which.
 TEST_F(MeasurementsTest, FeetRestInTheOrderOfTheTrials) {
-  const std::string rest =
-      ", chain: left_leg, support: [right_sole], markers: a.tsv, joints: a.csv}";
-  folder_.Write("experiment.yaml", "trials: [{name: one, kind: calibration" + rest +
-                                       ", {name: two, kind: random" + rest +
-                                       ", {name: three, kind: calibration" + rest + "]");
+  std::string trials;
+  for (const auto& [name, kind] : std::map<std::string, std::string>{
+           {"one", "calibration"}, {"other", "random"}, {"third", "calibration"}}) {
+    for (const std::string type : {".tsv", ".csv"}) {
+      std::filesystem::copy_file(folder_.path() / ("a" + type), folder_.path() / (name + type));
+    }
+    trials += (trials.empty() ? "" : ", ") + ("{name: " + name + ", kind: " + kind) +
+              ", chain: left_leg, support: [right_sole], markers: " + name +
+              ".tsv, joints: " + name + ".csv}";
+  }
+  folder_.Write("experiment.yaml", "trials: [" + trials + "]");
   std::vector<int> order;
   for (const FootRest& foot : ReadMeasurements(project_, {folder_.path()}).foot_rests) {
     order.push_back(foot.trial);
