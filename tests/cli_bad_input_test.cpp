@@ -127,7 +127,7 @@ TEST_F(Program, BadTablesAreRefusedWhole) {
     WritePostureTable(scratch_.path() / "scaled.csv", recording, project.tree);
     return (scratch_.path() / "scaled.csv").string();
   };
-  ExpectRefused(Calibrate(project_, scaled("", 1000.0)), {"scaled.csv", "millimetres"});
+  ExpectRefused(Calibrate(project_, scaled("", 1000.0)), {"scaled.csv", "1000 times too large"});
   ExpectRefused(Calibrate(project_, scaled("WRIST", 1000.0)), {"scaled.csv", "WRIST"});
   const Project project = ReadProject(project_);
   Recording twins = ReadPostureTable(recording_, project).recording;

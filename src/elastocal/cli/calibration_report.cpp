@@ -201,8 +201,8 @@ std::string FramesText(const CalibrationRun& run) {
                RoundedSd(frame.attitude_sd * 180.0 / M_PI)});
   }
   return "\nError to be expected (sd) of the URDF between the root link and the ends of limbs, "
-         "springs aside.\nMarkers that are fitted do not show it; it is the smaller, the more of "
-         "their places are measured (--marker-places).\n" +
+         "springs aside.\nFitted markers do not show it; the more of their places are measured "
+         "(--marker-places), the smaller it is.\n" +
          table.Render();
 }
 
