@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 
