@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/math/numbers.hpp"
+#include "elastocal/robot/coordinates.hpp"
 
 namespace elastocal {
 namespace {
@@ -40,7 +40,7 @@ FollowerAlternative Following(const Project& project, const std::vector<Follower
     const Drive drive = DrivesOf(tree.joints[one.joint])[one.drive];
     Joint& joint = other.project.tree.joints[one.joint];
     (one.drive == 0 ? joint.multiplier : joint.more[one.drive - 1].multiplier) *= factor;
-    const Joint& leads = tree.joints[Size(tree.coordinate_joint[Size(drive.coordinate)])];
+    const Joint& leads = JointOfCoordinate(tree, drive.coordinate);
     other.what +=
         (other.what.empty() ? "" : ", ") +
         fmt::format("{} seems to follow {} by a factor of {:g}, not {:g} as described", joint.name,

@@ -11,6 +11,7 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/suspected_signs.hpp"
+#include "elastocal/robot/coordinates.hpp"
 
 namespace elastocal {
 namespace {
@@ -23,7 +24,7 @@ constexpr std::size_t kMostTurned = 6;
 
 LogAlternative WithOtherZero(const Recording& recording, const RobotTree& tree, int coordinate,
                              int quarters) {
-  const Joint& joint = tree.joints[Size(tree.coordinate_joint[Size(coordinate)])];
+  const Joint& joint = JointOfCoordinate(tree, coordinate);
   Recording other = recording;
   other.q.col(coordinate).array() -= quarters * kQuarter;
   const std::string by = quarters == 2   ? "off by half a turn"
