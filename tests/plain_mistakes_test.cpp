@@ -9,6 +9,7 @@
 
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/random.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/robot/coupling.hpp"
 #include "elastocal/robot/kinematics.hpp"
@@ -16,6 +17,7 @@
 #include "elastocal/screening/told_positions.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/plain_mistakes.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {

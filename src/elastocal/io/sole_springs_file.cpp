@@ -7,7 +7,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "elastocal/files/output_files.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {

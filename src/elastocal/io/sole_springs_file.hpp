@@ -6,7 +6,7 @@
 #include "elastocal/calibration/sole_springs.hpp"
 #include "elastocal/files/yaml_value.hpp"
 
-namespace YAML {
+namespace YAML {  // NOLINT(readability-identifier-naming)
 class Emitter;
 }
 
