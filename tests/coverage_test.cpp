@@ -12,7 +12,7 @@
 #include "elastocal/calibration/frame_precision.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/robot/kinematics.hpp"
-#include "tests/standing_robot.hpp"
+#include "tests/standing_humanoid.hpp"
 
 namespace elastocal {
 namespace {
@@ -34,7 +34,7 @@ struct Coverage {
 
 /// A truth as the prior expects it: joints' errors are drawn from it anyway; of a compliance, never
 /// below zero, the absolute value of a draw.
-Eigen::VectorXd DrawFromPrior(const StandingRobot& robot, std::uint64_t seed) {
+Eigen::VectorXd DrawFromPrior(const StandingHumanoid& robot, std::uint64_t seed) {
   const Prior prior;
   Eigen::VectorXd truth = robot.DrawTruth(seed);
   Random random(seed + 1000);
@@ -47,8 +47,8 @@ Eigen::VectorXd DrawFromPrior(const StandingRobot& robot, std::uint64_t seed) {
 }
 
 /// Both legs and one arm, to be done in a minute: each leg while the other one carries.
-StandingRobot LegsAndArm(int postures) {
-  StandingRobot robot(postures);
+StandingHumanoid LegsAndArm(int postures) {
+  StandingHumanoid robot(postures);
   std::erase_if(robot.trials, [](const PlayedTrial& played) {
     return played.trial.name == "head_trunk" || played.trial.name == "torso_arm_right";
   });
@@ -75,7 +75,7 @@ struct Frames {
   }
 };
 
-std::vector<int> EndsOfLimbs(const StandingRobot& robot) {
+std::vector<int> EndsOfLimbs(const StandingHumanoid& robot) {
   std::vector<int> ends;
   for (const SupportLeg& leg : robot.model.legs) ends.push_back(leg.link);
   for (const char* arm : {"torso_arm_left", "torso_arm_right"}) {
@@ -85,7 +85,7 @@ std::vector<int> EndsOfLimbs(const StandingRobot& robot) {
   return ends;
 }
 
-Frames CompareFrames(const StandingRobot& robot, const Eigen::VectorXd& truth,
+Frames CompareFrames(const StandingHumanoid& robot, const Eigen::VectorXd& truth,
                      const CalibrationResult& result, const Recording& recording) {
   const std::vector<int> links = EndsOfLimbs(robot);
   const auto from_root = [&](const Eigen::VectorXd& delta, int posture, int link) {
@@ -131,7 +131,7 @@ struct Coverages {
   }
 };
 
-Coverages CalibrateOnce(const StandingRobot& robot, std::uint64_t seed) {
+Coverages CalibrateOnce(const StandingHumanoid& robot, std::uint64_t seed) {
   const Eigen::VectorXd truth = DrawFromPrior(robot, seed);
   const Recording recording =
       robot.Record(truth, {.torque_sensors = robot.project.torque_sensors, .seed = seed});
@@ -166,7 +166,7 @@ TEST(Coverage, NinetyFivePercentIntervalsHoldTheTruth) {
          "the same code in the other tests";
 #endif
   constexpr int kSeeds = 50;
-  const StandingRobot robot = LegsAndArm(16);
+  const StandingHumanoid robot = LegsAndArm(16);
   std::array<Coverages, 2> halves;
   std::vector<std::thread> threads;
   for (std::size_t half = 0; half < halves.size(); ++half) {

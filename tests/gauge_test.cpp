@@ -16,14 +16,14 @@
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/scratch_folder.hpp"
-#include "tests/standing_robot.hpp"
+#include "tests/standing_humanoid.hpp"
 
 namespace elastocal {
 namespace {
 
 /// The humanoid, calibrated whole: without springs, so that all is exact, or with them.
 struct GaugedRobot {
-  StandingRobot robot{12};
+  StandingHumanoid robot{12};
   Recording recording;
   CalibrationResult result;
 
@@ -220,7 +220,7 @@ TEST(Gauge, ChangesWhatLegsGiveWayByAHundredthOfTheDisplacement) {
 }
 
 TEST(Gauge, IsRefusedWhereItCannotBeHad) {
-  const StandingRobot& robot = GaugedRobot::Rigid().robot;
+  const StandingHumanoid& robot = GaugedRobot::Rigid().robot;
   EXPECT_NO_THROW(CheckGauge(kByLink, robot.model, robot.base));
   EXPECT_NO_THROW(CheckGauge(kByMarkers, robot.model, robot.base));
   BaseParameters held = robot.base;

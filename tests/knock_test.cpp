@@ -9,7 +9,7 @@
 #include "elastocal/project/project.hpp"
 #include "elastocal/screening/knocks.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
-#include "tests/standing_robot.hpp"
+#include "tests/standing_humanoid.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -19,7 +19,7 @@ constexpr int kPostures = 16;  // a trial
 const Eigen::Vector3d kPush(3e-3, 0.0, -4e-3);
 
 struct KnockExperiment {
-  const StandingRobot& robot;
+  const StandingHumanoid& robot;
   Eigen::VectorXd truth;
   StandingOptions options;
   std::vector<LabelCluster> clusters;
@@ -33,8 +33,8 @@ struct KnockExperiment {
     }
   }
 
-  static const StandingRobot& Robot() {
-    static const StandingRobot robot(kPostures);
+  static const StandingHumanoid& Robot() {
+    static const StandingHumanoid robot(kPostures);
     return robot;
   }
 
@@ -196,7 +196,7 @@ TEST(Knock, IsNoLegThatGivesWayWhereARigidRobotIsEstimated) {
 // same, so that they differ by less than their uncertainty.
 TEST(Knock, LeavesNoTraceInTheParametersOnceTheClusterIsTwo) {
   const KnockExperiment experiment(15);
-  const StandingRobot& robot = experiment.robot;
+  const StandingHumanoid& robot = experiment.robot;
   const Recording clean = experiment.Clean();
   const CalibrationResult expected =
       Calibrate(robot.model, clean, robot.base, ModelKind::kFull, {});

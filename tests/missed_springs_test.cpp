@@ -10,13 +10,13 @@
 
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
-#include "tests/standing_robot.hpp"
+#include "tests/standing_humanoid.hpp"
 
 namespace elastocal {
 namespace {
 
 TEST(MissedSprings, AreNamedWhereTheProjectHoldsTheRobotRigid) {
-  StandingRobot robot(8);
+  StandingHumanoid robot(8);
   const Eigen::VectorXd truth = robot.DrawTruth(4);
   Measurements measured;
   measured.calibration = robot.Record(

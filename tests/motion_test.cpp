@@ -12,7 +12,7 @@
 #include "elastocal/screening/knocks.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/validation/model_comparison.hpp"
-#include "tests/standing_robot.hpp"
+#include "tests/standing_humanoid.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -176,7 +176,7 @@ TEST(Motion, AMotionThatRepeatsItselfTellsNoMoreThanOnce) {
 /// is recorded ten times on each way. What the model does not know displaces and turns all but the
 /// standing foot: anew for each rest, a first-order process in time along the ways.
 struct SlowLegs {
-  StandingRobot robot{16};
+  StandingHumanoid robot{16};
   Eigen::VectorXd truth = robot.DrawTruth(3);
 
   SlowLegs() {
@@ -251,7 +251,7 @@ Recording RecordWays(const SlowLegs& legs, double of_body, const Eigen::Vector3d
                      std::uint64_t seed) {
   constexpr double kKept = 0.99;
   constexpr int kPushed = 80;
-  StandingRobot robot = legs.robot;
+  StandingHumanoid robot = legs.robot;
   robot.trials.erase(robot.trials.begin(), robot.trials.begin() + 5);
   Recording recording = robot.Record(
       legs.truth,

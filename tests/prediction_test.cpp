@@ -9,7 +9,7 @@
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 #include "tests/scratch_folder.hpp"
-#include "tests/standing_robot.hpp"
+#include "tests/standing_humanoid.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -27,7 +27,7 @@ double LargestDistance(const Placement& a, const Placement& b) {
 }
 
 TEST(Prediction, FootMarkersAlonePlaceTheWaistWhateverTheOthersSay) {
-  const StandingRobot robot(6);
+  const StandingHumanoid robot(6);
   const Eigen::VectorXd truth = robot.DrawTruth(1);
   const Recording clean =
       robot.Record(truth, {.marker_sd = 0.0, .torque_sensors = robot.project.torque_sensors});

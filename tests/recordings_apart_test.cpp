@@ -14,7 +14,7 @@
 #include "elastocal/mistakes/find_faults.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
-#include "tests/standing_robot.hpp"
+#include "tests/standing_humanoid.hpp"
 
 namespace elastocal {
 namespace {
@@ -68,7 +68,7 @@ class RecordingsApart : public testing::Test {
 
   int marker_parameters() const { return 3 * robot_.model.marker_count(); }
 
-  StandingRobot robot_{8};
+  StandingHumanoid robot_{8};
   Eigen::VectorXd truth_ = robot_.DrawTruth(4), other_ = robot_.DrawTruth(5);
 };
 

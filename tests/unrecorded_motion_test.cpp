@@ -9,7 +9,7 @@
 
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/robot/coordinates.hpp"
-#include "tests/standing_robot.hpp"
+#include "tests/standing_humanoid.hpp"
 
 namespace elastocal {
 namespace {
@@ -41,7 +41,7 @@ class UnrecordedMotion : public testing::Test {
     return FindUnrecordedMotion(robot_.project, robot, recording, fit);
   }
 
-  StandingRobot robot_{8};
+  StandingHumanoid robot_{8};
   const RobotTree& tree_ = robot_.project.tree;
 };
 

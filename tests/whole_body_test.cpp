@@ -16,7 +16,7 @@
 #include "elastocal/screening/torque_check.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 #include "tests/dense_problem.hpp"
-#include "tests/standing_robot.hpp"
+#include "tests/standing_humanoid.hpp"
 
 namespace elastocal {
 namespace {
@@ -24,7 +24,7 @@ namespace {
 // Markers, feet and ties of trials; residuals in mm, unknowns of the order of one. The loads are
 // held, as in a solve.
 TEST(WholeBody, JacobianEqualsDifferences) {
-  const StandingRobot robot(2, 5, true);
+  const StandingHumanoid robot(2, 5, true);
   const Eigen::VectorXd truth = robot.DrawTruth(6);
   const Recording recording = robot.Record(truth, {.torque_sensors = robot.project.torque_sensors});
   const Placement placement = RegisterPlacement(robot.model, recording, 1e-3);
@@ -58,7 +58,7 @@ TEST(WholeBody, JacobianEqualsDifferences) {
 }
 
 TEST(WholeBody, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
-  const StandingRobot robot(24);
+  const StandingHumanoid robot(24);
   const Eigen::VectorXd truth = robot.DrawTruth(3);
   const Recording recording =
       robot.Record(truth, {.marker_sd = 0.0, .torque_sensors = robot.project.torque_sensors});
@@ -91,7 +91,7 @@ TEST(WholeBody, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
 // The constraint of eq. 14 rooted in the foot (as a nuisance: above): one truth, if the data are
 // perfect. What this form holds as exact has a standard deviation of a micrometre.
 TEST(WholeBody, RootedInTheFootGivesBackTheTruth) {
-  const StandingRobot robot(10);
+  const StandingHumanoid robot(10);
   const Eigen::VectorXd truth = robot.DrawTruth(3);
   const Recording recording =
       robot.Record(truth, {.marker_sd = 0.0, .torque_sensors = robot.project.torque_sensors});
@@ -131,7 +131,7 @@ class StandingTest : public ::testing::Test {
     return largest;
   }
 
-  StandingRobot robot_{16};
+  StandingHumanoid robot_{16};
   Eigen::VectorXd truth_ = robot_.DrawTruth(4);
 };
 

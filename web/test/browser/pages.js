@@ -15,6 +15,7 @@ export async function openPage(browser, file, options = {}) {
   page.on('pageerror', (error) => problems.push(error.message));
   page.on('dialog', (dialog) => { problems.push(`dialog: ${dialog.message()}`); dialog.dismiss(); });
   page.on('request', (request) => !request.url().startsWith('data:') && !request.url().startsWith('blob:') && request.url() !== url && requests.push(request.url()));
+  page.setDefaultTimeout(120000);  // beside other work, WebGL in software takes long
   await page.goto(url);
   await page.waitForSelector('#app[data-complete]', {state: 'attached'});
   return {page, problems, requests};
@@ -25,7 +26,7 @@ const isDriverNote = (text) => /GPU stall due to ReadPixels|GL Driver Message/.t
 
 /** Milliseconds from the start of loading to the first picture of the viewer. */
 export async function waitForViewer(page) {
-  await page.waitForSelector('.viewer[data-ready]', {timeout: 20000});
+  await page.waitForSelector('.viewer[data-ready]');
   return page.getAttribute('.viewer', 'data-ready');
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/standing_robot.hpp"
+#include "tests/standing_humanoid.hpp"
 
 #include <cmath>
 #include <limits>
@@ -64,7 +64,7 @@ PlayedTrial Play(const RobotTree& tree, const std::string& chain, int postures, 
 
 }  // namespace
 
-StandingRobot::StandingRobot(int postures, std::uint64_t seed, bool torque_bias)
+StandingHumanoid::StandingHumanoid(int postures, std::uint64_t seed, bool torque_bias)
     : project(ReadProject(SourceFile("models/talos/project.yaml"))) {
   Elasticity elasticity;
   elasticity.torque_bias = torque_bias;
@@ -86,7 +86,7 @@ StandingRobot::StandingRobot(int postures, std::uint64_t seed, bool torque_bias)
   }
 }
 
-Eigen::VectorXd StandingRobot::DrawTruth(std::uint64_t seed) const {
+Eigen::VectorXd StandingHumanoid::DrawTruth(std::uint64_t seed) const {
   const double angle = 0.5 * M_PI / 180.0;
   Random random(seed);
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
@@ -117,8 +117,8 @@ Eigen::VectorXd StandingRobot::DrawTruth(std::uint64_t seed) const {
   return truth;
 }
 
-Recording StandingRobot::Record(const Eigen::VectorXd& truth,
-                                const StandingOptions& options) const {
+Recording StandingHumanoid::Record(const Eigen::VectorXd& truth,
+                                   const StandingOptions& options) const {
   Recording recording = MakeStandingRecording(model, truth, trials, options);
   for (int m = 0; m < model.marker_count(); ++m) {
     const int link = model.markers[m].link;

@@ -12,14 +12,14 @@ namespace elastocal {
 
 /// The embedded humanoid as it is calibrated whole: head, trunk and arms on both feet, each leg
 /// while the other one carries.
-struct StandingRobot {
+struct StandingHumanoid {
   Project project;
   ErrorModel model;  ///< torsion of the trunk and the arms, both legs elastic
   BaseParameters base;
   std::vector<PlayedTrial> trials;
 
   /// The robot with `postures` a trial: head and trunk, left and right arm, left and right leg.
-  explicit StandingRobot(int postures, std::uint64_t seed = 1, bool torque_bias = false);
+  explicit StandingHumanoid(int postures, std::uint64_t seed = 1, bool torque_bias = false);
 
   /// Errors of usual size for all identifiable parameters; compliances as the paper found.
   Eigen::VectorXd DrawTruth(std::uint64_t seed) const;
