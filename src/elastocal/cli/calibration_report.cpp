@@ -303,9 +303,12 @@ std::string LookAt(const CalibrationRun& run) {
 }  // namespace
 
 std::string DescribeRun(const CalibrationRun& run, bool verbose) {
+  // Estimates that a named mistake has spoilt would only mislead.
+  const bool spoilt = !run.faults.empty() && !verbose;
+  const std::string estimates =
+      spoilt ? "" : FramesText(run) + ParametersText(run.comparison.largest());
   const std::string screen = RefusedText(run) + VerdictText(run) + "\n" + Overview(run) +
-                             ModelTable(run) + FramesText(run) +
-                             ParametersText(run.comparison.largest()) + LookAt(run);
+                             ModelTable(run) + estimates + LookAt(run);
   return screen + (verbose ? "\n" + DescribeDetails(run)
                            : "  all parameters, elasticity and correlations: --verbose\n");
 }

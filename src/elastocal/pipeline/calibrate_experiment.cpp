@@ -268,7 +268,8 @@ void JudgeRun(Work& work) {
     JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.deployment.urdf_kind,
                  run.verdict);
   }
-  // What a table that is plainly wrong does to a fit is no other fault.
+  // What a mistake does to a fit is no other fault.
+  if (!run.faults.empty()) LeaveOutConsequences(run.verdict);
   if (!work.sound) run.verdict.objections.clear();
   run.verdict.objections.insert(run.verdict.objections.begin(), run.faults.begin(),
                                 run.faults.end());

@@ -19,6 +19,7 @@ constexpr double kWorse = 1.05;            // times as large: more than chance m
 constexpr const char* kAdvice =
     " Check the order and signs of the columns, the joints' zeros, and which link each marker is "
     "on.";
+constexpr const char* kFurthest = "furthest from nominal: ";
 
 std::string Number(double value, const char* unit) {
   char text[64];
@@ -89,7 +90,7 @@ void NameLargest(const CalibrationResult& result, const Prior& prior, Verdict& v
   const Parameter& parameter = result.model.parameters[largest];
   const bool angle = parameter.unit == ParameterUnit::kRadian;
   verdict.remarks.push_back(
-      "furthest from nominal: " + parameter.name + ", " +
+      kFurthest + parameter.name + ", " +
       Number(result.delta[largest] * (angle ? 180.0 / M_PI : 1e3), angle ? "deg" : "mm"));
 }
 
@@ -157,6 +158,13 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
   }
   if (!verdict.objections.empty()) NameLargest(result, options.prior, verdict);
   return verdict;
+}
+
+void LeaveOutConsequences(Verdict& verdict) {
+  std::erase_if(verdict.objections,
+                [](const std::string& objection) { return objection.ends_with(kAdvice); });
+  std::erase_if(verdict.remarks,
+                [](const std::string& remark) { return remark.starts_with(kFurthest); });
 }
 
 void JudgeDeployment(const Deployment& deployment, double expected_error, Verdict& verdict) {

@@ -28,6 +28,11 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
               const Excitation& excitation, const Recording& recording,
               const CalibrationOptions& options);
 
+/// Where mistakes of the recording are named, takes out the objections to the fit that ask the user
+/// to look for some (implausible noise, angles, lengths and errors, too many outliers), and the
+/// remark which parameter is furthest from nominal.
+void LeaveOutConsequences(Verdict& verdict);
+
 /// Adds an objection where the URDF alone is worse than the uncalibrated robot (by 5 % or more, on
 /// data not used for it), and a remark where it is about as good: there is nothing to correct. Also
 /// an objection where it errs by more than twice what a robot is expected to err that was never

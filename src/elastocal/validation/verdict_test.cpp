@@ -72,6 +72,20 @@ TEST_F(VerdictTest, ImplausibleNoiseNamesTheFurthestParameter) {
   EXPECT_NE(Judged().remarks[0].find("leg_4.theta, 5.73 deg"), std::string::npos);
 }
 
+TEST_F(VerdictTest, WhatANamedMistakeDoesToTheFitIsLeftOut) {
+  CalibrationResult& result = comparison_.results[2];
+  result.marker_sd = 9e-3;
+  result.delta[FindParameter(result.model.parameters, "leg_4.theta")] = 0.1;
+  Verdict verdict = Judged();
+  verdict.objections.emplace_back("another");
+  verdict.remarks.emplace_back("a remark");
+  ASSERT_EQ(verdict.objections.size(), 2u);
+  ASSERT_EQ(verdict.remarks.size(), 2u);
+  LeaveOutConsequences(verdict);
+  EXPECT_EQ(verdict.objections, std::vector<std::string>{"another"});
+  EXPECT_EQ(verdict.remarks, std::vector<std::string>{"a remark"});
+}
+
 TEST_F(VerdictTest, PriorAtItsLimit) {
   comparison_.results[2].prior_scale[PriorGroup::kLengths] = MostWidening(PriorGroup::kLengths);
   ExpectObjection("lengths are more than ten times");
