@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastocal/calibration/frames_from_link.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
 namespace elastocal {
@@ -11,13 +12,13 @@ namespace {
 
 constexpr int kPosturesAssessed = 20;  // spread over the recording: sizes change little with more
 
-/// Poses of the links in the frame of the root link.
-std::vector<Transform> PosesFromRoot(const ErrorModel& model, const Geometry& geometry,
-                                     const Eigen::VectorXd& q, const std::vector<int>& links) {
+/// Poses of the links in the frame of the link `from`.
+std::vector<Transform> PosesFrom(int from, const ErrorModel& model, const Geometry& geometry,
+                                 const Eigen::VectorXd& q, const std::vector<int>& links) {
   const std::vector<Transform> all = CalibratedLinkTransforms(model, geometry, q);
-  const Transform T_root_reference = WaistPose(geometry).inverse();
+  const Transform T_from_reference = all[static_cast<std::size_t>(from)].inverse();
   std::vector<Transform> poses;
-  for (int link : links) poses.push_back(T_root_reference * all[static_cast<std::size_t>(link)]);
+  for (int link : links) poses.push_back(T_from_reference * all[static_cast<std::size_t>(link)]);
   return poses;
 }
 
@@ -45,57 +46,73 @@ bool PlacesLinks(const Parameter& parameter) {
   return !IsExternal(parameter.kind) && !IsCompliance(parameter.kind);
 }
 
-}  // namespace
-
-std::vector<FramePrecision> AssessFrames(const CalibrationResult& result,
-                                         const Recording& recording, const std::vector<int>& ends) {
-  const ErrorModel& model = result.model;
-  const std::vector<int> links = MovedByKnownJoints(model, ends);
-  const std::vector<int>& parameters = result.posterior.parameters;
-  const std::vector<int> postures = SomePostures(recording);
-  const auto row = [&](std::size_t posture, std::size_t link) {
-    return static_cast<Eigen::Index>(6 * (posture * links.size() + link));
-  };
-  const Geometry at = ApplyErrors(model, result.delta);
-  std::vector<std::vector<Transform>> poses;
-  for (int i : postures) {
-    poses.push_back(PosesFromRoot(model, at, recording.q.row(i).transpose(), links));
-  }
-  // By posture and link: displacement and rotation with each parameter.
-  Eigen::MatrixXd slopes =
-      Eigen::MatrixXd::Zero(row(postures.size(), 0), static_cast<Eigen::Index>(parameters.size()));
-  for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const Parameter& parameter = model.parameters[static_cast<std::size_t>(parameters[k])];
-    if (!PlacesLinks(parameter)) continue;
-    const double step = 1e-3 * ParameterScale(parameter);
-    Eigen::VectorXd beside = result.delta;
-    beside[parameters[k]] += step;
-    const Geometry moved = ApplyErrors(model, beside);
-    for (std::size_t p = 0; p < postures.size(); ++p) {
-      const std::vector<Transform> there =
-          PosesFromRoot(model, moved, recording.q.row(postures[p]).transpose(), links);
-      for (std::size_t j = 0; j < links.size(); ++j) {
-        const Transform& here = poses[p][j];
-        const Eigen::AngleAxisd turn(here.linear().transpose() * there[j].linear());
-        auto slope = slopes.block<6, 1>(row(p, j), static_cast<Eigen::Index>(k));
-        slope << there[j].translation() - here.translation(), turn.angle() * turn.axis();
-        slope /= step;
+/// By posture and link six rows, displacement and rotation of the links seen from `from`, with each
+/// parameter.
+Eigen::MatrixXd SlopesOfFrames(int from, const KnownGeometry& known,
+                               const Eigen::MatrixXd& postures, const std::vector<int>& links) {
+  const ErrorModel& model = known.model;
+  const auto poses_with = [&](const Eigen::VectorXd& delta) {
+    const Geometry geometry = ApplyErrors(model, delta);
+    std::vector<Transform> poses;
+    for (Eigen::Index p = 0; p < postures.rows(); ++p) {
+      for (const Transform& pose :
+           PosesFrom(from, model, geometry, postures.row(p).transpose(), links)) {
+        poses.push_back(pose);
       }
     }
+    return poses;
+  };
+  const std::vector<Transform> at = poses_with(known.delta);
+  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(
+      6 * static_cast<Eigen::Index>(at.size()), static_cast<Eigen::Index>(known.parameters.size()));
+  for (std::size_t k = 0; k < known.parameters.size(); ++k) {
+    const int index = known.parameters[k];
+    const Parameter& parameter = model.parameters[static_cast<std::size_t>(index)];
+    if (!PlacesLinks(parameter)) continue;
+    const double step = 1e-3 * ParameterScale(parameter);
+    Eigen::VectorXd beside = known.delta;
+    beside[index] += step;
+    const std::vector<Transform> moved = poses_with(beside);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const Eigen::AngleAxisd turn(at[i].linear().transpose() * moved[i].linear());
+      auto slope =
+          slopes.block<6, 1>(6 * static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+      slope << moved[i].translation() - at[i].translation(), turn.angle() * turn.axis();
+      slope /= step;
+    }
   }
+  return slopes;
+}
+
+}  // namespace
+
+std::vector<FramePrecision> AssessFramesFrom(int from, const KnownGeometry& known,
+                                             const Eigen::MatrixXd& postures,
+                                             const std::vector<int>& ends) {
+  if (MovedByKnownJoints(known.model, {from}).empty() || postures.rows() == 0) return {};
+  const std::vector<int> links = MovedByKnownJoints(known.model, ends);
+  const Eigen::MatrixXd slopes = SlopesOfFrames(from, known, postures, links);
   const Eigen::VectorXd variances =
-      (slopes * result.posterior.covariance).cwiseProduct(slopes).rowwise().sum();
+      (slopes * known.covariance).cwiseProduct(slopes).rowwise().sum();
   std::vector<FramePrecision> frames;
   for (std::size_t j = 0; j < links.size(); ++j) {
     double position = 0.0, attitude = 0.0;
-    for (std::size_t p = 0; p < postures.size(); ++p) {
-      position += variances.segment<3>(row(p, j)).sum();
-      attitude += variances.segment<3>(row(p, j) + 3).sum();
+    for (std::size_t p = 0; p < static_cast<std::size_t>(postures.rows()); ++p) {
+      const auto row = static_cast<Eigen::Index>(6 * (p * links.size() + j));
+      position += variances.segment<3>(row).sum();
+      attitude += variances.segment<3>(row + 3).sum();
     }
-    const auto count = static_cast<double>(postures.size());
+    const auto count = static_cast<double>(postures.rows());
     frames.push_back({links[j], std::sqrt(position / count), std::sqrt(attitude / count)});
   }
   return frames;
+}
+
+std::vector<FramePrecision> AssessFrames(const CalibrationResult& result,
+                                         const Recording& recording, const std::vector<int>& ends) {
+  return AssessFramesFrom(
+      0, {result.model, result.delta, result.posterior.parameters, result.posterior.covariance},
+      recording.q(SomePostures(recording), Eigen::all), ends);
 }
 
 }  // namespace elastocal

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/calibration/nominal_places.hpp"
 #include "elastocal/cli/calibration_details.hpp"
 #include "elastocal/cli/figures.hpp"
 #include "elastocal/cli/session.hpp"
@@ -191,6 +192,18 @@ std::string ModelTable(const CalibrationRun& run) {
          table.Render();
 }
 
+/// That the project's places of markers are good enough to say so.
+std::string NominalPlacesText(const NominalPlaces& places) {
+  if (!places.worth_telling()) return "";
+  return fmt::format(
+      "The places of markers in the project are off by {0:.1f} mm (sd of a coordinate), where the "
+      "recording tells it\n(in {1:.0f} directions). If those of hands, feet and waist were "
+      "measured "
+      "as well as the others, say so\n(calibration: {{prior: {{marker_mm: {0:.1f}}}}}): the errors "
+      "above become smaller.\n",
+      1e3 * places.sd, places.directions);
+}
+
 /// What no error of markers shows: how far the ends of limbs may be from where the URDF has them.
 std::string FramesText(const CalibrationRun& run) {
   if (run.frames.empty()) return "";
@@ -203,7 +216,7 @@ std::string FramesText(const CalibrationRun& run) {
   return "\nError to be expected (sd) of the URDF between the root link and the ends of limbs, "
          "springs aside.\nFitted markers do not show it; the more of their places are measured "
          "(--marker-places), the smaller it is.\n" +
-         table.Render();
+         table.Render() + NominalPlacesText(AssessNominalPlaces(run.comparison.largest()));
 }
 
 /// Parameters of the robot that differ from nominal at 95 %, the furthest first: in units of what

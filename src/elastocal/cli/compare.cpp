@@ -31,11 +31,14 @@ int Compare(const CompareOptions& options) {
   DeclareJson(options.common.json_file, outputs);
   outputs.Prepare();
   const ComparisonRun run = CompareCalibrations(options.a, options.b, options.comparison);
-  outputs.Set(options.common.json_file,
-              JsonText(MakeComparisonJson(run.a, run.b, run.comparison, options.comparison)));
+  nlohmann::ordered_json json =
+      MakeComparisonJson(run.a, run.b, run.comparison, options.comparison);
+  json["soles"] = SoleDifferencesJson(run.soles);
+  outputs.Set(options.common.json_file, JsonText(json));
   outputs.Publish();
   Print(options.common.Silent(), DescribeComparison(run.a, run.b, run.comparison,
-                                                    options.comparison, options.common.verbose));
+                                                    options.comparison, options.common.verbose) +
+                                     DescribeSoleChanges(run.soles));
   PrintWarnings(run.comparison.warnings, options.common.verbose);
   return kFine;
 }

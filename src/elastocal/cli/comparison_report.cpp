@@ -247,4 +247,32 @@ Json MakeComparisonJson(const CalibrationEstimate& a, const CalibrationEstimate&
   return json;
 }
 
+std::string DescribeSoleChanges(const std::vector<SoleDifference>& soles) {
+  if (soles.empty()) return "";
+  TextTable table({"sole of", "A, um/N", "B, um/N", "B - A", "95 % interval", ""});
+  for (const SoleDifference& sole : soles) {
+    const double sd = 1e6 * sole.sd, difference = 1e6 * (sole.b - sole.a);
+    table.Add({sole.leg, RoundedTo(1e6 * sole.a, sd), RoundedTo(1e6 * sole.b, sd),
+               RoundedTo(difference, sd), RoundedInterval(difference, 1e6 * sole.half_width, sd),
+               sole.significant() ? "changed" : ""});
+  }
+  return "\nSprings of soles, which are no part of the verdict on the joints\n" + table.Render();
+}
+
+Json SoleDifferencesJson(const std::vector<SoleDifference>& soles) {
+  Json json = Json::array();
+  for (const SoleDifference& sole : soles) {
+    const double difference = sole.b - sole.a;
+    json.push_back({{"leg", sole.leg},
+                    {"unit", "m/N"},
+                    {"a", sole.a},
+                    {"b", sole.b},
+                    {"difference", difference},
+                    {"sd", sole.sd},
+                    {"interval_95", {difference - sole.half_width, difference + sole.half_width}},
+                    {"significant", sole.significant()}});
+  }
+  return json;
+}
+
 }  // namespace elastocal::cli

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "elastocal/calibration/sole_changes.hpp"
 #include "elastocal/validation/calibration_comparison.hpp"
 
 namespace elastocal::cli {
@@ -20,5 +22,11 @@ nlohmann::ordered_json MakeComparisonJson(const CalibrationEstimate& a,
                                           const CalibrationEstimate& b,
                                           const CalibrationComparison& comparison,
                                           const ComparisonOptions& options);
+
+/// A table of the springs of soles; empty without any.
+std::string DescribeSoleChanges(const std::vector<SoleDifference>& soles);
+
+/// The same for programs: `soles` of the comparison.
+nlohmann::ordered_json SoleDifferencesJson(const std::vector<SoleDifference>& soles);
 
 }  // namespace elastocal::cli

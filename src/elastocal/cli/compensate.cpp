@@ -16,6 +16,7 @@
 #include "elastocal/io/motion_file.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/compensate_motion.hpp"
 #include "elastocal/planning/planned_motion_file.hpp"
@@ -53,6 +54,24 @@ std::string DescribeLeft(const CompensatedMotion& result) {
          "A degree counts 5.2 mm. (yields): fewer than six joints, which cannot correct all\n\n";
 }
 
+/// What the calibration does not know, which is in none of the other figures.
+std::string DescribeExpected(const std::vector<ExpectedAtLimb>& expected) {
+  if (expected.empty()) {
+    return "How far the real robot will be from that is not known: the calibration has no "
+           "covariance\n";
+  }
+  TextTable table({"expected on the robot, rms", "mm", "deg"});
+  for (const ExpectedAtLimb& one : expected) {
+    table.Add({one.limb, fmt::format("{:.1f}", 1e3 * one.position),
+               fmt::format("{:.2f}", one.attitude * 180.0 / M_PI)});
+  }
+  return "\n" + table.Render() +
+         "Seen from the standing foot: what the calibration does not know of the geometry. A "
+         "single robot may have\ntwice as much. Springs in fast motion and a stabiliser come on "
+         "top. Measured places of markers on hands,\nfeet and waist make it less (calibrate "
+         "--marker-places)\n";
+}
+
 std::string DescribeCompensation(const CompensatedMotion& result, const RobotTree& tree) {
   TextTable table({"over all samples", "worst", "at s", "where"});
   const auto add = [&](const char* what, const MotionExtreme& at, double scale) {
@@ -77,8 +96,11 @@ std::string DescribeCompensation(const CompensatedMotion& result, const RobotTre
     add("zero-moment point to the edge, mm: corrected", result.zmp, 1e3);
   }
   return table.Render() + DescribeOpenJoints(result.at_rest) + DescribeLeft(result) +
-         fmt::format("Left at hands, feet and waist: at most {:.3f} mm and {:.4f} deg\n",
-                     1e3 * result.residual_m, result.residual_rad * kDegreesARadian);
+         fmt::format(
+             "Left by limits at hands, feet and waist of the calibrated model: at most "
+             "{:.3f} mm and {:.4f} deg\n",
+             1e3 * result.residual_m, result.residual_rad * kDegreesARadian) +
+         DescribeExpected(result.expected);
 }
 
 int Compensate(const CompensateOptions& options) {
@@ -97,11 +119,14 @@ int Compensate(const CompensateOptions& options) {
   const RuntimeContent content =
       options.as == "urdf" ? RuntimeContent::kGeometry : RuntimeContent::kEverything;
   const RuntimeModel model = MakeRuntimeModel(robot.project, robot.calibration, content);
-  const CompensatedMotion result = CompensateMotion(
+  CompensatedMotion result = CompensateMotion(
       robot.project, model, planned,
       {.loads = options.loads == "planned" ? MotionLoads::kPlanned : MotionLoads::kStatics,
        .most_left_m = 1e-3 * options.most_left_mm,
        .ease_s = options.ease_s});
+  result.expected = ExpectErrors(
+      robot.project, robot.calibration,
+      ReadCalibrationFiles(FindCalibrationFiles(robot.calibration.source)), result.planned.motion);
   const bool fine = result.broken.empty();
   if (fine) outputs.Set(options.output, FormatMotionTable(robot.project.tree, result.planned));
   outputs.Set(options.common.json_file, MakeCompensationJson(result));

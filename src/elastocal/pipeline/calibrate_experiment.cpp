@@ -386,7 +386,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   // Not in the paper: no measurement tells where the waist's frame is on the robot.
   GiveGauge(work.settings(), run.comparison);
   run.frames = AssessFrames(run.comparison.largest(), work.recording(), EndsOfLimbs(work.project));
-  run.soles = KnownSoles(run.comparison.largest(), work.measured, options.prior);
+  run.soles = KnownSoles(work.project, run.comparison.largest(), work.measured, options.prior);
   run.waist_error = WaistErrors(run.comparison, work.measured, work.settings());
   MakeUrdf(work);
   return Finished(std::move(work));

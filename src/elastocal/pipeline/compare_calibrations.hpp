@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
+#include "elastocal/calibration/sole_changes.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/validation/calibration_comparison.hpp"
 
@@ -12,6 +14,7 @@ namespace elastocal {
 struct ComparisonRun {
   CalibrationEstimate a, b;  ///< the earlier and the later one
   CalibrationComparison comparison;
+  std::vector<SoleDifference> soles;  ///< which no joint has, and no verdict of the joints
 };
 
 /// Reads two calibrations of one robot and tells which joints moved between them (paper, section

@@ -27,11 +27,13 @@ TEST(KnownSoles, AreThoseOfAnEarlierCalibrationWhereNoTrialTellsThem) {
           result, "before", ZeroOffsets::kOrigin,
           {.soles = {{.leg = "left", .changes = 2, .compliance = 8e-7, .sd = 5e-8},
                      {.leg = "right", .changes = 1, .compliance = 1e-7, .sd = 1e-7}}}));
+  Project project;
+  project.tree = robot.biped.tree;
   const Measurements nothing;
-  const std::vector<SoleSpring> alone = KnownSoles(result, nothing, {});
+  const std::vector<SoleSpring> alone = KnownSoles(project, result, nothing, {});
   ASSERT_EQ(alone.size(), 2u);
   EXPECT_TRUE(std::isinf(alone[0].sd));
-  const std::vector<SoleSpring> soles = KnownSoles(result, nothing, file);
+  const std::vector<SoleSpring> soles = KnownSoles(project, result, nothing, file);
   EXPECT_EQ(soles[0].compliance, 8e-7);
   EXPECT_TRUE(soles[0].told());
   EXPECT_TRUE(std::isinf(soles[1].sd));  // the earlier one did not know it either

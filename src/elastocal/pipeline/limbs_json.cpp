@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/calibration/leg_stiffness.hpp"
+#include "elastocal/calibration/nominal_places.hpp"
 #include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
@@ -42,6 +43,14 @@ Json FramesJson(const CalibrationRun& run) {
                       {"attitude_sd_deg", Finite(frame.attitude_sd * 180.0 / M_PI)}});
   }
   return frames;
+}
+
+Json NominalPlacesJson(const CalibrationResult& result) {
+  const NominalPlaces places = AssessNominalPlaces(result);
+  if (!places.told()) return nullptr;
+  return {{"sd_mm", 1e3 * places.sd},
+          {"directions", places.directions},
+          {"prior_mm", Finite(1e3 * places.prior_sd)}};
 }
 
 Json LegsJson(const CalibrationRun& run) {

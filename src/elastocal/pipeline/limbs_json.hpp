@@ -13,6 +13,9 @@ nlohmann::ordered_json Finite(double value);
 /// How well the ends of limbs are known in the frame of the root link: `frames` of summary.json.
 nlohmann::ordered_json FramesJson(const CalibrationRun& run);
 
+/// How well the project has the places of markers (`nominal_places`); null where it is not told.
+nlohmann::ordered_json NominalPlacesJson(const CalibrationResult& result);
+
 /// How stiff the legs are at the waist: `legs` of summary.json. Null for a robot without legs.
 nlohmann::ordered_json LegsJson(const CalibrationRun& run);
 

@@ -353,6 +353,7 @@ std::string MakeSummaryJson(const CalibrationRun& run) {
   AddStatistics(run, json);
   AddErrors(run, json);
   json["frames"] = FramesJson(run);
+  json["nominal_places"] = NominalPlacesJson(result);
   if (!run.trials.empty()) {
     AddTrials(run, json);
     AddHeldOut(run, json);

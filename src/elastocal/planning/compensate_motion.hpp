@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/planning/expected_errors.hpp"
 #include "elastocal/planning/planned_motion_file.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/robot/joint_motion.hpp"
@@ -45,6 +46,9 @@ struct CompensatedMotion {
   MotionExtreme correction;          ///< largest change of a joint, rad or m
   double residual_m = 0.0, residual_rad = 0.0;  ///< largest that is left at limbs that do not yield
   std::vector<LeftAtLimb> left;
+  /// What the calibration does not know, which nothing above has in it (ExpectErrors): for whoever
+  /// has the covariance to fill in.
+  std::vector<ExpectedAtLimb> expected;
   MotionExtreme position;  ///< least distance to a joint's limit, rad or m
   MotionExtreme velocity;  ///< largest share of a joint's velocity limit
   /// Least distance of parts that can touch, of the calibrated robot with these positions, m; where

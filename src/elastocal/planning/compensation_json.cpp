@@ -29,6 +29,12 @@ std::string MakeCompensationJson(const CompensatedMotion& result) {
                             {"samples", one.samples},
                             {"yields", one.yields}});
   }
+  json["expected"] = nlohmann::ordered_json::array();
+  for (const ExpectedAtLimb& one : result.expected) {
+    json["expected"].push_back({{"limb", one.limb},
+                                {"rms_mm", 1e3 * one.position},
+                                {"rms_deg", one.attitude * 180.0 / M_PI}});
+  }
   json["to_joint_limit"] = MotionExtremeJson(result.position);
   json["velocity_share"] = MotionExtremeJson(result.velocity);
   if (result.has_clearance) json["clearance_m"] = MotionExtremeJson(result.clearance);

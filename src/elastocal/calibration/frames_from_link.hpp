@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "elastocal/calibration/frame_precision.hpp"
+
+namespace elastocal {
+
+/// Errors of geometry and how well they are known together.
+struct KnownGeometry {
+  const ErrorModel& model;
+  const Eigen::VectorXd& delta;
+  const std::vector<int>& parameters;  ///< indices into the model's
+  const Eigen::MatrixXd& covariance;   ///< of these, in products of their SI units
+};
+
+/// AssessFrames of links that are seen from the link `from` (0: the root link), over the postures
+/// (rows). Nothing where the recording says nothing of that link.
+std::vector<FramePrecision> AssessFramesFrom(int from, const KnownGeometry& known,
+                                             const Eigen::MatrixXd& postures,
+                                             const std::vector<int>& ends);
+
+}  // namespace elastocal

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/planning/expected_errors.hpp"
+
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "tests/runtime_calibration.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+/// TALOS at rest on its left foot, of which one parameter is not known.
+class ExpectedErrors : public testing::Test {
+ protected:
+  std::map<std::string, ExpectedAtLimb> Expect(const std::string& parameter, double sd) const {
+    CalibrationEstimate estimate;
+    estimate.covariance_names = {"marker.LHAND_1.x", parameter};  // that of no joint does not count
+    estimate.covariance = Eigen::Vector2d(1.0, sd * sd).asDiagonal();
+    JointMotion motion;
+    motion.q = project_.motion.rest.transpose();
+    motion.support = {{FindLink(project_.tree, "left_sole_link")}};
+    std::map<std::string, ExpectedAtLimb> expected;
+    for (const ExpectedAtLimb& one :
+         ExpectErrors(project_, RandomCalibration(project_, 1), estimate, motion)) {
+      expected.emplace(one.limb, one);
+    }
+    return expected;
+  }
+
+  const Project project_ = ReadProject(SourceFile("models/talos/project.yaml"));
+};
+
+TEST_F(ExpectedErrors, OfAStandingFootAreThoseOfAllThatItCarries) {
+  const auto expected = Expect("leg_left_6_joint.r", 2e-3);
+  EXPECT_EQ(expected.count("leg_left"), 0u);  // all is seen from there
+  for (const char* limb : {"head_trunk", "arm_left", "arm_right", "leg_right", "base_link"}) {
+    ASSERT_EQ(expected.count(limb), 1u) << limb;
+    EXPECT_NEAR(expected.at(limb).position, 2e-3, 1e-8) << limb;
+    EXPECT_NEAR(expected.at(limb).attitude, 0.0, 1e-8) << limb;
+  }
+}
+
+TEST_F(ExpectedErrors, OfTheZeroOfAWristAreThoseOfItsHand) {
+  const auto expected = Expect("arm_left_7_joint.theta", 0.01);
+  EXPECT_NEAR(expected.at("arm_left").attitude, 0.01, 1e-6);
+  EXPECT_GT(expected.at("arm_left").position, 0.0);
+  for (const char* limb : {"head_trunk", "arm_right", "leg_right", "base_link"}) {
+    EXPECT_NEAR(expected.at(limb).position, 0.0, 1e-9) << limb;
+    EXPECT_NEAR(expected.at(limb).attitude, 0.0, 1e-9) << limb;
+  }
+}
+
+TEST_F(ExpectedErrors, AreNotKnownWithoutACovariance) {
+  JointMotion motion;
+  motion.q = project_.motion.rest.transpose();
+  EXPECT_TRUE(ExpectErrors(project_, RandomCalibration(project_, 1), {}, motion).empty());
+}
+
+}  // namespace
+}  // namespace elastocal
