@@ -60,6 +60,7 @@ TEST(PhysicalInertia, WarnsOfMassesInGrams) {
   link.mass = 20.0;
   link.inertia = Eigen::Matrix3d::Identity();
   tree.links[0].mass = 20e3;  // of a root on the floor, anything
+  tree.links[0].inertia = 1e3 * Eigen::Matrix3d::Identity();
   EXPECT_TRUE(InertiaWarnings(tree).empty());
   link.mass = 20e3;
   ASSERT_EQ(InertiaWarnings(tree).size(), 1U);
