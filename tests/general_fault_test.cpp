@@ -97,6 +97,20 @@ TEST_F(GeneralFaults, AnEncoderThatDriftsIsNoSlip) {
   EXPECT_NEAR(std::stod(said.substr(begin.size())), 1.0, 0.15) << said;  // sd 0.06
 }
 
+TEST_F(GeneralFaults, ADriftInOneTrialIsNamedWithIt) {
+  recorded_.trials = {{"first", TrialKind::kCalibration, {project_.chains.front().name}},
+                      {"second", TrialKind::kCalibration, {project_.chains.front().name}}};
+  recorded_.trial.assign(48, 0);
+  std::fill(recorded_.trial.begin() + 24, recorded_.trial.end(), 1);
+  EXPECT_EQ(Said(), "");
+  recorded_.q.col(CoordinateOf("elbow_joint")).head(24) +=
+      Eigen::VectorXd::LinSpaced(24, 0.0, 1.5 * kDegree);
+  const std::string said = Said(), begin = "elbow_joint: its positions drift by ";
+  ASSERT_EQ(said.find(begin), 0u) << said;
+  EXPECT_NEAR(std::stod(said.substr(begin.size())), 1.5, 0.2) << said;
+  ExpectIn(said, "from the first posture to the last of trial first");
+}
+
 // A derivative at the wrong gain is far from the gain.
 TEST_F(GeneralFaults, AGainOfHalfIsFoundAsHalf) {
   recorded_.q.col(CoordinateOf("elbow_joint")) *= 0.5;

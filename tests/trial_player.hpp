@@ -34,10 +34,11 @@ struct PlayOptions {
   double drift_ppm = 0.0;
   double frame_rate_hz = 100.0;
   double log_rate_hz = 200.0;
-  double marker_sd = 0.2e-3;  ///< of a coordinate, m
-  double torque_sd = 0.1;     ///< N.m
-  int standing = 0;           ///< the link that does not move
-  bool one_by_one = false;    ///< joints move one after the other, the last ones first
+  double marker_sd = 0.2e-3;    ///< of a coordinate, m
+  double torque_sd = 0.1;       ///< N.m
+  int standing = 0;             ///< the link that does not move
+  bool one_by_one = false;      ///< joints move one after the other, the last ones first
+  bool there_and_back = false;  ///< every other posture is the first one
   std::uint64_t seed = 1;
 };
 
@@ -90,6 +91,7 @@ class PlayedMotion {
         const bool waits = options.one_by_one && turn + c != postures_.cols() - 1;
         if (waits) postures_(i, c) = i == 0 ? middle : postures_(i - 1, c);
       }
+      if (options.there_and_back && i % 2 == 0) postures_.row(i) = postures_.row(0).eval();
     }
   }
 

@@ -215,6 +215,14 @@ void PairMirrors(const RobotTree& tree, std::vector<Limb>& limbs) {
   }
 }
 
+/// Height above the root link of the first joint that is the limb's alone, in the zero posture, m.
+double BeginOf(const RobotTree& tree, const std::vector<Transform>& poses, const Limb& limb) {
+  const auto own = std::find_if(limb.joints.begin(), limb.joints.end(), [&](int k) {
+    return tree.joints[Size(k)].parent_body == limb.from_body;
+  });
+  return own == limb.joints.end() ? 0.0 : poses[Size(*own) + 1].translation().z();
+}
+
 /// Legs are measured from the root link or, where that is a frame on the floor, from the hips.
 void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb>& limbs) {
   constexpr double kSameFloor = 0.08, kBelow = 0.25;  // of the longest limb
@@ -234,7 +242,8 @@ void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb
     Limb& limb = limbs[i];
     const double top = root_on_floor ? LegTop(tree, limb.joints) : 0.0;
     const bool far_below = poses[Size(limb.tip_body)].translation().z() < top - kBelow * longest;
-    limb.leg = limb.mirror >= 0 && far_below && lowest[i] < floor + kSameFloor * longest;
+    const bool above = !root_on_floor && BeginOf(tree, poses, limb) > kBelow * longest;
+    limb.leg = limb.mirror >= 0 && far_below && !above && lowest[i] < floor + kSameFloor * longest;
   }
 }
 

@@ -29,9 +29,11 @@ struct Limbs {
 /// what is beyond them are fingers. Bodies that one or two joints without an end carry are wheels,
 /// and so are several ends of one body that turn without an end. Legs are limbs with a mirror image
 /// whose ends are the lowest of the robot in the zero posture, well below the root link (below
-/// their own first joint where the root link is a frame on the floor). Names are those of the
-/// SRDF's groups, or of NameLimb: "left_leg", "right_arm", "head"; they can name files and differ
-/// from each other. The tip is the link that the SRDF names, or the furthest one of the last body.
+/// their own first joint where the root link is a frame on the floor), and which begin not well
+/// above it (arms of an upper body). Names are
+/// those of the SRDF's groups, or of NameLimb: "left_leg", "right_arm", "head"; they can name files
+/// and differ from each other. The tip is the link that the SRDF names, or the furthest one of the
+/// last body.
 Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics);
 
 }  // namespace elastocal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/drafting/limbs.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -49,6 +50,30 @@ std::string EndOfNeck(const std::string& urdf) {
     if (tip.find("neck") != std::string::npos || tip == "head") return tip;
   }
   return "";
+}
+
+/// Two limbs that hang from a trunk, so many m from the root link upwards, and a head.
+std::string UpperBody(double trunk_m, double head_m) {
+  std::string text = "<robot name='r'>" + LinkText("base") +
+                     JointText("base", "trunk", "", "0 0 " + std::to_string(trunk_m));
+  for (const std::string side : {"l", "r"}) {
+    const std::string y = side == "l" ? "0.2" : "-0.2";
+    text += JointText("trunk", side + "_1", "", "0 " + y + " 0") +
+            JointText(side + "_1", side + "_2", "", "0 0 -0.35") +
+            JointText(side + "_2", side + "_3", "", "0 0 -0.35");
+  }
+  return text + JointText("trunk", "head", "", "0 0 " + std::to_string(head_m)) + "</robot>";
+}
+
+int CountLegs(const std::string& urdf) {
+  const ProjectDraft draft = DraftProject(urdf, "r.urdf", {});
+  return static_cast<int>(std::count_if(draft.limbs.limbs.begin(), draft.limbs.limbs.end(),
+                                        [](const Limb& limb) { return limb.leg; }));
+}
+
+TEST(Limbs, ArmsThatEndLowestAreNoLegs) {
+  EXPECT_EQ(CountLegs(UpperBody(0.4, 0.1)), 0) << "shoulders above the root link";
+  EXPECT_EQ(CountLegs(UpperBody(-0.1, 0.5)), 2) << "hips";
 }
 
 TEST(Limbs, GoOnBehindAJointThatFollows) {

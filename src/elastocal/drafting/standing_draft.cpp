@@ -88,7 +88,7 @@ Refused LiftRefused(const StandingRobot& robot, int foot) {
                     100.0 * robot.limits.torque_share,
                     left_out.value > kAbsurd
                         ? "; is the effort in the URDF that of a motor before its gear, or "
-                          "are inertias not in kg.m^2?"
+                          "are masses not in kg, or inertias not in kg.m^2?"
                         : "");
   }
   return refused;

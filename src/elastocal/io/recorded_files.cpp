@@ -219,6 +219,20 @@ bool IsSurelyQtm(const ByteSource& source) {
   return first.size() < text.size() && std::ranges::find(kKeys, first) != kKeys.end();
 }
 
+/// Throws InputError where two columns have the same quantity, as two topics of one joint have.
+void RequireDifferentNames(const Table& table, const std::vector<std::string>& names) {
+  std::map<std::string, std::string> taken;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].empty() || table.CountsRows(static_cast<int>(i))) continue;
+    const auto [first, is_new] = taken.emplace(names[i], table.header()[i]);
+    if (is_new) continue;
+    table.Fail(first->second == table.header()[i]
+                   ? "the column " + Quote(first->second) + " comes twice"
+                   : "the columns " + Quote(first->second) + " and " + Quote(table.header()[i]) +
+                         " stand for the same (" + Quote(names[i]) + "); leave one of them out");
+  }
+}
+
 /// A CSV with a column of the time, all of whose other columns are numbers of joints.
 JointLog ReadPlainLog(const ByteSource& source, const std::string& time_unit) {
   SourceStream stream(source);
@@ -232,6 +246,7 @@ JointLog ReadPlainLog(const ByteSource& source, const std::string& time_unit) {
   }
   std::vector<std::string> names;
   std::ranges::transform(header, std::back_inserter(names), PlainColumnName);
+  RequireDifferentNames(table, names);
   std::vector<double> time;
   std::map<std::string, std::vector<double>> columns;
   const auto is_empty = [&] {
@@ -255,9 +270,6 @@ JointLog ReadPlainLog(const ByteSource& source, const std::string& time_unit) {
     }
   }
   if (time.empty()) throw InputError(source.name() + ": no row below the header");
-  for (const auto& [name, column] : columns) {
-    if (column.size() != time.size()) table.Fail("two columns " + Quote(name));
-  }
   ToSeconds(TimeUnitOfName(*at).value(), time_unit, source.name(), time);
   return JoinColumns(source.name(), time, std::move(columns));
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <future>
+#include <numbers>
 #include <set>
 
 #include "elastocal/io/motor_columns.hpp"
@@ -115,10 +116,10 @@ class UpAxis {
 };
 
 /// Samples all trials; while one is sampled, the markers of the next are read on another thread.
-/// `logged` gets the joints that a log has.
+/// `logged` gets the joints that the log of each has.
 std::vector<TrialSamples> SampleAll(const std::vector<TrialFiles>& trials, const MarkedRobot& robot,
                                     const Project& project, UpAxis& up,
-                                    std::set<std::string>& logged) {
+                                    std::vector<std::set<std::string>>& logged) {
   std::vector<TrialSamples> samples;
   const InterruptionOfCaller interruption;
   const auto start_reading = [&](std::size_t i) {
@@ -130,7 +131,7 @@ std::vector<TrialSamples> SampleAll(const std::vector<TrialFiles>& trials, const
   std::future<MarkerFile> markers = start_reading(0);
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const JointLog log = ReadJointFile(trials[i].joints, trials[i].reading, project);
-    logged.insert(log.names.begin(), log.names.end());
+    logged.emplace_back(log.names.begin(), log.names.end());
     while (markers.wait_for(kBetweenLooks) != std::future_status::ready) InterruptionPoint();
     MarkerFile file = markers.get();
     up.Take(file);
@@ -185,6 +186,30 @@ Experiment ReadExperiments(const std::vector<fs::path>& folders, const Project& 
   return all;
 }
 
+/// The trials whose logs have no positions of a joint.
+std::vector<std::string> TrialsWithout(const std::string& joint,
+                                       const std::vector<TrialFiles>& trials,
+                                       const std::vector<std::set<std::string>>& logged) {
+  std::vector<std::string> without;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    if (!logged[i].contains(joint)) without.push_back(trials[i].name);
+  }
+  return without;
+}
+
+/// `trials`: those whose logs have no positions of the joint, as others have.
+std::string DescribeMissing(const std::string& joint, double position,
+                            const std::vector<std::string>& trials, const Project& project) {
+  std::string names;
+  for (const std::string& name : trials) names += (names.empty() ? "" : ", ") + name;
+  const bool slides =
+      project.tree.joints[FindJoint(project.tree, joint)].type == JointType::kPrismatic;
+  return joint + ": only some logs have its positions; in those of " + names +
+         " it is taken to stand still at " +
+         FormatNumber(slides ? 1e3 * position : 180.0 / std::numbers::pi * position) +
+         (slides ? " mm" : " deg") + ", as the project says (recording.not_recorded)";
+}
+
 }  // namespace
 
 bool IsRecordingFolder(const fs::path& path) {
@@ -199,7 +224,7 @@ RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const
   std::vector<TrialSamples> calibration, validation;
   RecordingFolder result;
   UpAxis up(experiment);
-  std::set<std::string> logged;
+  std::vector<std::set<std::string>> logged;
   std::vector<TrialSamples> sampled = SampleAll(experiment.trials, robot, project, up, logged);
   SampleOddOnesAgain(experiment.trials, robot, project, sampled);
   RefuseExchangedLogs(
@@ -224,9 +249,13 @@ RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const
   result.validation = MergeTrials(robot, validation, source);
   result.calibration.gravity = result.validation.gravity = up.gravity();
   for (const auto& [name, position] : project.recording.not_recorded) {
-    if (logged.contains(name)) continue;
-    result.calibration.joints_not_recorded.push_back(name);
-    result.validation.joints_not_recorded.push_back(name);
+    const std::vector<std::string> without = TrialsWithout(name, experiment.trials, logged);
+    if (without.size() == experiment.trials.size()) {
+      result.calibration.joints_not_recorded.push_back(name);
+      result.validation.joints_not_recorded.push_back(name);
+    } else if (!without.empty()) {
+      result.findings.push_back(DescribeMissing(name, position, without, project));
+    }
   }
   if (result.calibration.posture_count() + result.validation.posture_count() == 0) {
     throw InputError(source + ": no trial can be used; " + result.findings.front());

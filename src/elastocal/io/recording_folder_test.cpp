@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/io/recording_folder.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -173,6 +174,14 @@ TEST_F(RecordingFolderTest, NeedsEveryJointThatMovesAMarker) {
   played.log.torques = played.log.torques.leftCols(played.log.torques.cols() - 1).eval();
   WriteJointLog(folder_.path() / "a.csv", played.log);
   ExpectInputError([&] { Read(); }, {"a.csv", missing, "swing", "not_recorded_deg"});
+  // Where the project says that it stood still, the other log does not say that it did.
+  project_.recording.not_recorded[missing] = 0.1;
+  const RecordingFolder folder = Read();
+  EXPECT_TRUE(folder.calibration.joints_not_recorded.empty());
+  const std::string expected = missing + ": only some logs have its positions; in those of swing ";
+  EXPECT_TRUE(std::ranges::any_of(folder.findings, [&](const std::string& finding) {
+    return finding.starts_with(expected) && finding.find("at 5.72958 deg") != std::string::npos;
+  }));
 }
 
 TEST_F(RecordingFolderTest, TellsRecordingFoldersFromOthers) {

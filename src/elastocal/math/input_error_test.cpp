@@ -17,6 +17,7 @@ TEST(EditDistance, CountsInsertionsDeletionsAndSubstitutions) {
   EXPECT_EQ(EditDistance("", "abc"), 3);
   EXPECT_EQ(EditDistance("abc", ""), 3);
   EXPECT_EQ(EditDistance("", ""), 0);
+  EXPECT_EQ(EditDistance("Same", "sAMe"), 0);
 }
 
 TEST(DidYouMean, NamesTheNearest) {
@@ -26,6 +27,12 @@ TEST(DidYouMean, NamesTheNearest) {
 
 TEST(DidYouMean, TheFirstOfTwoEquallyNear) {
   EXPECT_EQ(DidYouMean("leg_left_3_joint", kJoints), "; did you mean 'leg_left_1_joint'?");
+}
+
+TEST(DidYouMean, TakesCapitalsForSmallLetters) {
+  EXPECT_EQ(DidYouMean("LEG_LEFT_2_JOINT", kJoints), "; did you mean 'leg_left_2_joint'?");
+  EXPECT_EQ(DidYouMean("left_j3", std::vector<std::string>{"left_j", "LEFT_J3"}),
+            "; did you mean 'LEFT_J3'?");
 }
 
 TEST(DidYouMean, IsSilentWhereNothingIsNear) {

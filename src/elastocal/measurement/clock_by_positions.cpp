@@ -337,4 +337,19 @@ double LeftByPositions(const MarkedRobot& robot, const std::vector<int>& markers
   return comparison.Left(clock);
 }
 
+std::optional<double> LagByPositions(const MarkedRobot& robot, const std::vector<int>& markers,
+                                     const std::vector<int>& standing, const SmoothedLog& log,
+                                     const std::vector<int>& coordinates,
+                                     const MarkerTrajectories& trajectories,
+                                     const ClockFit& clock) {
+  Comparison comparison(robot, markers, standing, log, coordinates, trajectories);
+  ClockFit other = clock;
+  other.lag_s = clock.second_lag_s;
+  other.drift_ppm = 0.0;
+  const double here = comparison.Left(clock), there = comparison.Left(other);
+  if (here < kClearly * there) return clock.lag_s;
+  if (there < kClearly * here) return other.lag_s;
+  return std::nullopt;
+}
+
 }  // namespace elastocal

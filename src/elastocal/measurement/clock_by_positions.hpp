@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "elastocal/measurement/clock.hpp"
@@ -35,5 +36,13 @@ double LeftByPositions(const MarkedRobot& robot, const std::vector<int>& markers
                        const std::vector<int>& standing, const SmoothedLog& log,
                        const std::vector<int>& coordinates, const MarkerTrajectories& trajectories,
                        const ClockFit& clock);
+
+/// Of the two lags of an ambiguous clock (ClockState::kAmbiguous), the one at which positions leave
+/// less than half of what they leave at the other (LeftByPositions); none where neither does. It
+/// takes no more motion than that from one posture to the next, which RefineClock cannot do with.
+std::optional<double> LagByPositions(const MarkedRobot& robot, const std::vector<int>& markers,
+                                     const std::vector<int>& standing, const SmoothedLog& log,
+                                     const std::vector<int>& coordinates,
+                                     const MarkerTrajectories& trajectories, const ClockFit& clock);
 
 }  // namespace elastocal

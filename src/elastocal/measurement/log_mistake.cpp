@@ -162,15 +162,14 @@ struct Candidate {
 
 /// The one of the best correlation or, of several, with which positions leave least (`left_by`).
 template <typename LeftBy>
-std::optional<LogMistake> BestByPositions(std::vector<Candidate> candidates,
-                                          const LeftBy& left_by) {
+std::optional<Candidate> BestByPositions(std::vector<Candidate> candidates, const LeftBy& left_by) {
   if (candidates.empty()) return std::nullopt;
   std::stable_sort(
       candidates.begin(), candidates.end(),
       [](const Candidate& a, const Candidate& b) { return a.mistake.peak > b.mistake.peak; });
   if (candidates.size() > kMostByPositions) candidates.resize(kMostByPositions);
   const Candidate* best = &candidates.front();
-  if (candidates.size() == 1) return best->mistake;
+  if (candidates.size() == 1) return *best;
   double least = left_by(*best);
   for (const Candidate& one : candidates) {
     const double left = left_by(one);
@@ -178,7 +177,17 @@ std::optional<LogMistake> BestByPositions(std::vector<Candidate> candidates,
     least = left;
     best = &one;
   }
-  return best->mistake;
+  return *best;
+}
+
+/// The clock or, where two lags are as likely, that of the one at which positions leave least.
+template <typename LeftBy>
+ClockFit NearestClock(const SmoothedLog& log, const ClockFit& clock, const LeftBy& left_by) {
+  if (clock.state != ClockState::kAmbiguous) return clock;
+  ClockFit other = clock;
+  other.lag_s = clock.second_lag_s;
+  other.drift_ppm = 0.0;
+  return left_by(log, other) < left_by(log, clock) ? other : clock;
 }
 
 }  // namespace
@@ -189,10 +198,10 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
                                          const Eigen::MatrixXd& speeds,
                                          const MarkerTrajectories& trajectories,
                                          const std::optional<double>& expected_lag_s,
-                                         const ClockOptions& options, double peak) {
+                                         const ClockOptions& options, const ClockFit& clock) {
   const double rate_hz = trajectories.rate_hz;
-  if (peak > kFitsAsItIs) return std::nullopt;
-  const double least_peak = std::max(kLeastPeak, 1.0 - kFarBetter * (1.0 - peak));
+  if (clock.peak > kFitsAsItIs) return std::nullopt;
+  const double least_peak = std::max(kLeastPeak, 1.0 - kFarBetter * (1.0 - clock.peak));
   std::vector<Candidate> candidates;
   const auto try_one = [&](LogMistake mistake) {
     const SmoothedLog changed = WithoutMistake(log, mistake);
@@ -210,11 +219,17 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
   for (const LogMistake& moved : MovedBlocks(robot, markers, coordinates, log.joints)) {
     try_one(moved);
   }
-  std::optional<LogMistake> best =
-      BestByPositions(std::move(candidates), [&](const Candidate& one) {
-        return LeftByPositions(robot, markers, standing, WithoutMistake(log, one.mistake),
-                               coordinates, trajectories, one.fit);
-      });
+  const auto left_by = [&](const SmoothedLog& by, const ClockFit& fit) {
+    return LeftByPositions(robot, markers, standing, by, coordinates, trajectories, fit);
+  };
+  const auto left_without = [&](const Candidate& one) {
+    return left_by(WithoutMistake(log, one.mistake), one.fit);
+  };
+  const auto chosen = BestByPositions(std::move(candidates), left_without);
+  std::optional<LogMistake> best;
+  if (chosen && left_without(*chosen) < left_by(log, NearestClock(log, clock, left_by))) {
+    best = chosen->mistake;
+  }
   const LoggedSpeeds logged = PredictSpeeds(robot, markers, standing, log, coordinates, rate_hz);
   for (const int column : columns) {
     const auto [still_from, still_to] = LongestStill(log, columns, column);

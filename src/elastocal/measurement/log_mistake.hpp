@@ -22,21 +22,23 @@ struct LogMistake {
 
 /// What is wrong with a log whose clock cannot be told: the reversed sign of one joint, exchange of
 /// two, or columns of a limb (or of a part of it, three joints and more) all moved by one. Undone,
-/// it lets the clock be told, with the best correlation, which must be far better than `peak`, that
-/// of the log as it is (a quarter of what it lacks to 1). Speeds do not tell which of two joints
-/// with parallel axes turns the other way; the positions in `trajectories` do, which must leave
-/// least. Or it is a joint that is logged in exactly the same place for two seconds or more, in
-/// which others move by half a radian, while the rest of the log tells the
-/// clock as well, by which that part is not what the cameras saw (joints that are moved one after
-/// the other stand still for long). `speeds` and `logged` as for EstimateTrialClock, `markers` to
-/// `coordinates` as for PredictSpeeds. Joints that hardly move are passed over.
+/// it lets the clock be told, with the best correlation, which must be far better than that of
+/// `clock`, which is by the log as it is (a quarter of what it lacks to 1). Speeds do not tell
+/// which of two joints with parallel axes turns the other way, nor which way a motion there and
+/// back goes (another joint, one posture later, may be as fast); the positions in `trajectories`
+/// do, which must leave least, and less than by the log as it is. Or it is a joint that is logged
+/// in exactly the same place for two seconds or more, in which others move by half a radian, while
+/// the rest of the log tells the clock as well, by which that part is not what the cameras saw
+/// (joints that are moved one after the other stand still for long). `speeds` and `logged` as for
+/// EstimateTrialClock, `markers` to `coordinates` as for PredictSpeeds. Joints that hardly move are
+/// passed over.
 std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::vector<int>& markers,
                                          const std::vector<int>& standing, const SmoothedLog& log,
                                          const std::vector<int>& coordinates,
                                          const Eigen::MatrixXd& speeds,
                                          const MarkerTrajectories& trajectories,
                                          const std::optional<double>& expected_lag_s,
-                                         const ClockOptions& options, double peak);
+                                         const ClockOptions& options, const ClockFit& clock);
 
 /// "sign:arm_7_joint", "exchange:a,b", "frozen:a"; `names`: of the columns.
 std::string NameOf(const LogMistake& mistake, const std::vector<std::string>& names);

@@ -172,6 +172,10 @@ class TrialSampler {
     return {trial_.support.empty() ? std::vector<int>{0} : trial_.support, speeds, std::nullopt};
   }
 
+  const MarkerTrajectories& PositionsFrom(const Motion& seen) const {
+    return seen.relative ? *seen.relative : trajectories_;
+  }
+
   ClockOptions ClockSettings() const {
     ClockOptions options = options_.clock;
     if (!trial_.of_motion()) options.largest_sd_s = options_.largest_rest_lag_sd_s;
@@ -214,13 +218,15 @@ class TrialSampler {
     ClockFit& clock = summary().clock;
     FitClock(seen);
     if (clock.state == ClockState::kReliable) {
-      if (trial_.of_motion()) {
-        Refine(seen);  // half a millisecond matters there
-      } else {
-        PreferLongerOverlap(seen);
-      }
+      TellByPositions(seen);
+      if (trial_.of_motion()) Refine(seen);  // half a millisecond matters there
       return "";
     }
+    const auto mistake =
+        FindLogMistake(robot_, markers_, seen.links, smoothed_log_, coordinates_, seen.speeds,
+                       PositionsFrom(seen), options_.expected_lag_s, ClockSettings(), clock);
+    if (mistake) return Describe(clock) + "; " + Describe(*mistake, log_.names);
+    if (clock.state == ClockState::kAmbiguous && TellByPositions(seen)) return "";
     const std::string cause = CauseOfBadClock(seen);
     if (!cause.empty()) return Describe(clock) + cause;
     const bool vague =
@@ -230,32 +236,37 @@ class TrialSampler {
     return clock.state == ClockState::kReliable ? "" : Describe(clock);
   }
 
+  LoggedSpeeds SpeedsOfLog(const Motion& seen) const {
+    return PredictSpeeds(robot_, markers_, seen.links, smoothed_log_, coordinates_,
+                         trajectories_.rate_hz);
+  }
+
   void FitClock(const Motion& seen) {
-    const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, seen.links, smoothed_log_,
-                                              coordinates_, trajectories_.rate_hz);
-    summary().clock = EstimateTrialClock(seen.speeds, trajectories_.rate_hz, logged,
+    summary().clock = EstimateTrialClock(seen.speeds, trajectories_.rate_hz, SpeedsOfLog(seen),
                                          options_.expected_lag_s, ClockSettings());
   }
 
-  /// There and back, speeds may agree best one motion too late, where less of both takes part.
-  void PreferLongerOverlap(const Motion& seen) {
-    constexpr double kAsWell = 0.99, kLonger = 1.15, kNear_s = 0.3;
+  /// There and back, speeds agree at two lags, maybe best one motion too late; positions agree at
+  /// one of them. Whether they tell it.
+  bool TellByPositions(const Motion& seen) {
+    constexpr double kAsWell = 0.99, kBothFit = 0.99, kNear_s = 0.3;
     ClockFit& clock = summary().clock;
-    if (clock.second_peak < kAsWell * clock.peak) return;
+    const bool told = clock.state == ClockState::kReliable;
+    if (clock.second_peak < (told ? kAsWell * clock.peak : kBothFit)) return false;
+    const auto lag_s = LagByPositions(robot_, markers_, seen.links, smoothed_log_, coordinates_,
+                                      PositionsFrom(seen), clock);
+    if (!lag_s || (told && *lag_s == clock.lag_s)) return false;
     ClockOptions near = ClockSettings();
     near.longest_lag_s = kNear_s;
-    const LoggedSpeeds logged = PredictSpeeds(robot_, markers_, seen.links, smoothed_log_,
-                                              coordinates_, trajectories_.rate_hz);
-    const ClockFit other =
-        EstimateTrialClock(seen.speeds, trajectories_.rate_hz, logged, clock.second_lag_s, near);
-    const bool longer = other.overlap_s > kLonger * clock.overlap_s;
-    if (other.state == ClockState::kReliable && longer) clock = other;
+    const ClockFit there =
+        EstimateTrialClock(seen.speeds, trajectories_.rate_hz, SpeedsOfLog(seen), *lag_s, near);
+    if (there.state == ClockState::kReliable) clock = there;
+    return there.state == ClockState::kReliable;
   }
 
   void Refine(const Motion& seen) {
     summary().clock = RefineClock(robot_, markers_, seen.links, smoothed_log_, coordinates_,
-                                  seen.relative ? *seen.relative : trajectories_, summary().clock,
-                                  ClockSettings());
+                                  PositionsFrom(seen), summary().clock, ClockSettings());
   }
 
   /// Whether the lag is hardly worse known than asked, and the robot moves from rest to rest. A
@@ -267,18 +278,10 @@ class TrialSampler {
   }
 
   std::string CauseOfBadClock(const Motion& seen) const {
-    const auto mistake =
-        FindLogMistake(robot_, markers_, seen.links, smoothed_log_, coordinates_, seen.speeds,
-                       seen.relative ? *seen.relative : trajectories_, options_.expected_lag_s,
-                       ClockSettings(), result_.summary.clock.peak);
-    if (mistake) return "; " + Describe(*mistake, log_.names);
     const std::string copies = DescribeCopies(smoothed_log_, log_.names);
     if (!copies.empty()) return "; " + copies;
-    const double rate_hz = trajectories_.rate_hz;
-    const auto means = TakeMeanSpeeds(
-        seen.speeds, rate_hz,
-        PredictSpeeds(robot_, markers_, seen.links, smoothed_log_, coordinates_, rate_hz),
-        options_.expected_lag_s, ClockSettings());
+    const auto means = TakeMeanSpeeds(seen.speeds, trajectories_.rate_hz, SpeedsOfLog(seen),
+                                      options_.expected_lag_s, ClockSettings());
     if (!means) return "";
     const auto of_clock = FindClockMistake(*means, result_.summary.clock.peak);
     return of_clock ? "; " + Describe(*of_clock) : "";

@@ -154,6 +154,15 @@ TEST(RecordingInfoTest, ConvertsOnePartOfABag) {
       {"no poses", "no joint states in the topic '/no'"});
 }
 
+// As PlotJuggler exports two topics, each of which has the states of the same joint.
+TEST(RecordingInfoTest, NamesTheColumnsOfTwoTopicsWithOneJoint) {
+  const ScratchFolder folder;
+  const std::string log = folder.Write(
+      "log.csv", "__time,/arm/hip/position,/body/hip/position\n0,0,0\n0.01,0,0\n0.02,0,0\n");
+  ExpectInputError([&] { DescribeRecording(log, {}, 8); },
+                   {"log.csv", "'/arm/hip/position' and '/body/hip/position'", "leave one"});
+}
+
 TEST(RecordingInfoTest, OptionsThatWouldDoNothingAreRefused) {
   const ScratchFolder folder;
   const std::string log = folder.Write("log.csv", "t,hip\n0,0\n0.01,0\n0.02,0\n");

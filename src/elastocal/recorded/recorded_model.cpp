@@ -81,10 +81,10 @@ void WarnOfFewWaistMarkers(const ErrorModel& model, bool free_root,
   warnings.push_back(
       free_root ? "no link has three markers that do not lie on a line: held-out postures cannot "
                   "be placed, so that nothing judges the estimate"
-                : fmt::format("{} markers on the root link{}; three or more that do not lie on a "
+                : fmt::format("{} marker{} on the root link{}; three or more that do not lie on a "
                               "line were expected: else the pose of the waist leans on the "
                               "markers of the chains",
-                              count, count < 3 ? "" : " lie on a line"));
+                              count, count == 1 ? "" : "s", count < 3 ? "" : " lie on a line"));
 }
 
 /// Where the root is free, only what moves markers of one body against those of another shows.

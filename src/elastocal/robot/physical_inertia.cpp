@@ -2,6 +2,8 @@
 #include "elastocal/robot/physical_inertia.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <numeric>
 
 #include <Eigen/Eigenvalues>
 
@@ -9,6 +11,18 @@
 
 namespace elastocal {
 namespace {
+
+/// What joints move weighs more than anything of that size; empty where it does not.
+std::string WarnOfHeavyParts(double moved_kg, double width_m) {
+  constexpr double kMost = 300.0;  // kg/m^3 of a cube as wide as the robot: they weigh 2 to 64
+  if (moved_kg <= kMost * width_m * width_m * width_m) return "";
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the parts that joints move weigh %.4g kg, in a robot that reaches %.2g m: are the "
+                "masses of the URDF in kg?",
+                moved_kg, 0.5 * width_m);
+  return text;
+}
 
 /// By how much the two smaller principal moments are to be raised; 0 for a physical inertia.
 /// `moments` in ascending order.
@@ -53,6 +67,9 @@ std::vector<std::string> InertiaWarnings(const RobotTree& tree) {
           "joints could do will seem too much for them");
     }
   }
+  const std::string heavy =
+      WarnOfHeavyParts(std::accumulate(mass.begin() + 1, mass.end(), 0.0), width);
+  if (!heavy.empty()) warnings.push_back(heavy);
   for (int body = 1; body < tree.body_count(); ++body) {
     if (mass[Size(body)] > 0.0) continue;
     const Link& link = tree.links[Size(tree.joints[Size(body - 1)].child_link)];

@@ -17,7 +17,8 @@ Eigen::Matrix3d PhysicalInertia(const Eigen::Matrix3d& inertia);
 
 /// What is wrong with the masses and inertias of a URDF, a sentence for each link: an inertia that
 /// no body has or only one that is wider than the robot, a mass without inertia, no mass at all on
-/// a body that a joint moves. Only the simulator needs inertias; statics need masses.
+/// a body that a joint moves; and masses that together are in g, it seems. Only the simulator needs
+/// inertias; statics need masses.
 std::vector<std::string> InertiaWarnings(const RobotTree& tree);
 
 }  // namespace elastocal

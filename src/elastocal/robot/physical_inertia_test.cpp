@@ -53,5 +53,21 @@ TEST(PhysicalInertia, WarningsNameTheLink) {
   EXPECT_NE(InertiaWarnings(tree)[0].find("wider than the robot"), std::string::npos);
 }
 
+TEST(PhysicalInertia, WarnsOfMassesInGrams) {
+  RobotTree tree = MakeRoot();
+  Link& link =
+      tree.links[static_cast<std::size_t>(AddJoint(tree, "joint", 0, Offset(0, 0, 1), {0, 0, 1}))];
+  link.mass = 20.0;
+  link.inertia = Eigen::Matrix3d::Identity();
+  tree.links[0].mass = 20e3;  // of a root on the floor, anything
+  tree.links[0].inertia = 1e3 * Eigen::Matrix3d::Identity();
+  EXPECT_TRUE(InertiaWarnings(tree).empty());
+  link.mass = 20e3;
+  ASSERT_EQ(InertiaWarnings(tree).size(), 1U);
+  EXPECT_EQ(InertiaWarnings(tree)[0],
+            "the parts that joints move weigh 2e+04 kg, in a robot that reaches 1 m: are the "
+            "masses of the URDF in kg?");
+}
+
 }  // namespace
 }  // namespace elastocal

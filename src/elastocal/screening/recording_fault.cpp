@@ -35,6 +35,19 @@ bool IsReached(const Recording& recording, int posture) {
   return recording.trial[posture - 1] == trial && !recording.trials[trial].of_motion();
 }
 
+/// From 0 in the first posture of a trial to 1 in its last, and 0 in other trials; of the recording
+/// for trial -1.
+double ShareGoneBy(int trial, const Recording& recording, int posture) {
+  if (trial >= 0 && recording.trial[posture] != trial) return 0.0;
+  int first = 0, count = recording.posture_count();
+  if (trial >= 0) {
+    const auto begin = std::find(recording.trial.begin(), recording.trial.end(), trial);
+    first = static_cast<int>(begin - recording.trial.begin());
+    count = static_cast<int>(std::count(begin, recording.trial.end(), trial));
+  }
+  return static_cast<double>(posture - first) / std::max(1, count - 1);
+}
+
 }  // namespace
 
 double LeastSize(FaultKind kind, bool slides) {
@@ -71,9 +84,7 @@ Eigen::MatrixXd MovesOf(const Recording& recording) {
 }
 
 double FactorOf(const RecordingFault& fault, const Recording& recording, int posture) {
-  if (fault.kind == FaultKind::kJointDrift) {
-    return static_cast<double>(posture) / std::max(1, recording.posture_count() - 1);
-  }
+  if (fault.kind == FaultKind::kJointDrift) return ShareGoneBy(fault.trial, recording, posture);
   if (fault.kind == FaultKind::kJointLag) {
     return -VelocityOf(fault.coordinate, recording, posture);
   }
@@ -236,7 +247,11 @@ std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
     std::snprintf(number, sizeof number, " by %.3f +- %.3f %s", fault.size / unit, fault.sd / unit,
                   slides ? "mm" : "deg");
     text += drifts ? ": its positions drift" : ": its positions are off";
-    if (drifts) return text + number + " from the first posture to the last";
+    if (drifts) {
+      const std::string of_trial =
+          fault.trial < 0 ? "" : " of trial " + recording.trials[fault.trial].name;
+      return text + number + " from the first posture to the last" + of_trial;
+    }
   } else {
     std::snprintf(number, sizeof number, "%s %.4f +- %.4f times the true ones",
                   joint ? ": its positions are" : " are", 1.0 + fault.size, fault.sd);

@@ -13,7 +13,7 @@ namespace elastocal {
 enum class FaultKind {
   kJointGain,    ///< a joint's positions are a multiple of the true ones
   kJointOffset,  ///< a joint's positions are off by a constant from a posture on
-  kJointDrift,   ///< of a table: they drift steadily from the first to the last posture
+  kJointDrift,   ///< they drift steadily from the first to the last posture (of a trial)
   kUnfinished,   ///< positions are ahead by a share of the move from the posture before
   kJointLag,     ///< of motions: they are those of some time before
   kCameraScale,  ///< the cameras' positions in one trial are a multiple of the true ones

@@ -303,19 +303,23 @@ class FaultSearch {
     try_splits(0, count, stride, add_split);
     if (recording_.trials.empty()) {
       TryStretches(count, stride, add, try_all, best_since);
-      if (of.linkage < 0) {
-        RecordingFault drift = of;
-        drift.kind = FaultKind::kJointDrift;
-        trials.push_back(MakeTrial(drift));
-        try_all();
-      }
     }
+    const auto add_drift = [&](int trial, int postures) {
+      if (of.linkage >= 0 || postures < 2 * kLeastSide) return;
+      RecordingFault drift = of;
+      drift.kind = FaultKind::kJointDrift;
+      drift.trial = trial;
+      trials.push_back(MakeTrial(drift));
+    };
+    add_drift(-1, count);
+    try_all();
     for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
       const auto first = std::find(recording_.trial.begin(), recording_.trial.end(), trial);
       if (first == recording_.trial.end()) continue;
       const int begin = static_cast<int>(first - recording_.trial.begin());
       const int end = begin + static_cast<int>(std::count(first, recording_.trial.end(), trial));
       add(trial, begin);
+      if (recording_.trials.size() > 1) add_drift(trial, end - begin);
       try_all();
       if (end == count) continue;  // to the end of the trial is to the end of the recording
       try_splits(begin, end, std::max(1, (end - begin) / kTrialSplits), [&](int split) {

@@ -250,7 +250,7 @@ std::vector<int> FindColumns(const Table& table, const ColumnRoles& roles, std::
       const std::string& first = table.header()[static_cast<std::size_t>(column)];
       table.Fail(first == name ? "the column " + Quote(name) + " comes twice"
                                : "the columns " + Quote(first) + " and " + Quote(name) +
-                                     " stand for the same");
+                                     " stand for the same (" + advice + ")");
     }
     column = static_cast<int>(i);
   }
