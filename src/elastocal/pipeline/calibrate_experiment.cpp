@@ -276,9 +276,8 @@ void JudgeRun(Work& work) {
   Append(UnconfirmedCorrections(work.options.accept, work.project, work.as_recorded),
          run.verdict.objections);
   run.coverage = FindCoverage(work.project, work.measured);
-  const bool whole = std::all_of(run.coverage.begin(), run.coverage.end(), [](const auto& of) {
-    return of.calibrated || of.refused.empty();
-  });
+  const bool whole = std::ranges::all_of(
+      run.coverage, [](const auto& of) { return of.calibrated || of.refused.empty(); });
   if (whole) {  // else the chain's objection says so
     Append(UnknownStance(work.project, work.measured), run.verdict.objections);
   }

@@ -35,19 +35,6 @@ bool IsReached(const Recording& recording, int posture) {
   return recording.trial[posture - 1] == trial && !recording.trials[trial].of_motion();
 }
 
-/// From 0 in the first posture of a trial to 1 in its last, and 0 in other trials; of the recording
-/// for trial -1.
-double ShareGoneBy(int trial, const Recording& recording, int posture) {
-  if (trial >= 0 && recording.trial[posture] != trial) return 0.0;
-  int first = 0, count = recording.posture_count();
-  if (trial >= 0) {
-    const auto begin = std::find(recording.trial.begin(), recording.trial.end(), trial);
-    first = static_cast<int>(begin - recording.trial.begin());
-    count = static_cast<int>(std::count(begin, recording.trial.end(), trial));
-  }
-  return static_cast<double>(posture - first) / std::max(1, count - 1);
-}
-
 }  // namespace
 
 double LeastSize(FaultKind kind, bool slides) {
@@ -84,7 +71,6 @@ Eigen::MatrixXd MovesOf(const Recording& recording) {
 }
 
 double FactorOf(const RecordingFault& fault, const Recording& recording, int posture) {
-  if (fault.kind == FaultKind::kJointDrift) return ShareGoneBy(fault.trial, recording, posture);
   if (fault.kind == FaultKind::kJointLag) {
     return -VelocityOf(fault.coordinate, recording, posture);
   }
@@ -96,6 +82,10 @@ double FactorOf(const RecordingFault& fault, const Recording& recording, int pos
   const bool in_trial = fault.trial < 0 || recording.trial[posture] == fault.trial;
   const bool within = posture >= fault.posture && (fault.end == 0 || posture < fault.end);
   if (!in_trial || !within) return 0.0;
+  if (fault.kind == FaultKind::kJointDrift) {  // from 0 in the first posture to 1 in the last
+    const int last = (fault.end > 0 ? fault.end : recording.posture_count()) - 1;
+    return static_cast<double>(posture - fault.posture) / std::max(1, last - fault.posture);
+  }
   return fault.kind == FaultKind::kJointGain ? recording.q(posture, fault.coordinate) : 1.0;
 }
 

@@ -34,9 +34,9 @@ struct RecordingFault {
   double sd = 0.0;     ///< of `size`, as wide as the postures scatter
   double share = 0.0;  ///< of the sum of squared residuals that it explains
   int linkage = -1;    ///< of the tree: `coordinate` is a motor of it; -1: of q
-  int end = 0;         ///< of a table: the one after the last that it is in; 0: it lasts
-  int axis = -1;       ///< of the cameras' frame: 0, 1 or 2
-  int by_axis = -1;    ///< of a shear: the one whose coordinate displaces those along `axis`
+  int end = 0;       ///< of a table, or a drift: the one after the last that it is in; 0: it lasts
+  int axis = -1;     ///< of the cameras' frame: 0, 1 or 2
+  int by_axis = -1;  ///< of a shear: the one whose coordinate displaces those along `axis`
 };
 
 /// How much of its size (of a gain, times the position) a fault has in a posture.

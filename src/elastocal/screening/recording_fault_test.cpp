@@ -36,12 +36,18 @@ TEST(RecordingFault, ALagIsUndoneByTheVelocityOfMotions) {
 }
 
 TEST(RecordingFault, ADriftOfATrialIsUndoneThere) {
-  RecordingFault drift{.kind = FaultKind::kJointDrift, .coordinate = 0, .trial = 1, .size = 0.19};
+  RecordingFault drift{.kind = FaultKind::kJointDrift,
+                       .coordinate = 0,
+                       .trial = 1,
+                       .posture = 20,
+                       .size = 0.19,
+                       .end = 40};
   const Recording recording = SineAndRests(0.0);
   const Eigen::VectorXd undone = recording.q.col(0) - WithoutFault(recording, drift).q.col(0);
   EXPECT_TRUE(undone.head(20).isZero(0.0));
   EXPECT_TRUE(undone.tail(20).isApprox(Eigen::VectorXd::LinSpaced(20, 0.0, 0.19), 1e-12));
   drift.trial = -1;  // over the recording: 39 steps
+  drift.posture = drift.end = 0;
   EXPECT_NEAR(FactorOf(drift, recording, 13), 1.0 / 3.0, 1e-12);
 }
 

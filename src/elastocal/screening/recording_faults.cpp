@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "elastocal/calibration/fit.hpp"
@@ -71,9 +72,7 @@ class FaultSearch {
     }
     TryUnfinished(equations, covariance);
     TryScale(equations, covariance);
-    std::stable_sort(
-        found_.begin(), found_.end(),
-        [](const RecordingFault& a, const RecordingFault& b) { return a.share > b.share; });
+    std::ranges::stable_sort(found_, std::greater(), &RecordingFault::share);
   }
 
   std::vector<RecordingFault> found() && { return std::move(found_); }
@@ -263,9 +262,10 @@ class FaultSearch {
   void TryOffsets(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
                   const Blocks& derivative, const RecordingFault& of, bool slides) {
     std::vector<Trial> trials;
-    const auto add = [&](int trial, int posture, int end = 0) {
+    const auto add = [&](int trial, int posture, int end = 0,
+                         FaultKind kind = FaultKind::kJointOffset) {
       RecordingFault fault = of;
-      fault.kind = FaultKind::kJointOffset;
+      fault.kind = kind;
       fault.trial = trial;
       fault.posture = posture;
       fault.end = end;
@@ -304,14 +304,11 @@ class FaultSearch {
     if (recording_.trials.empty()) {
       TryStretches(count, stride, add, try_all, best_since);
     }
-    const auto add_drift = [&](int trial, int postures) {
-      if (of.linkage >= 0 || postures < 2 * kLeastSide) return;
-      RecordingFault drift = of;
-      drift.kind = FaultKind::kJointDrift;
-      drift.trial = trial;
-      trials.push_back(MakeTrial(drift));
+    const auto add_drift = [&](int trial, int begin, int end) {
+      const bool long_enough = end == 0 || end - begin >= 2 * kLeastSide;
+      if (of.linkage < 0 && long_enough) add(trial, begin, end, FaultKind::kJointDrift);
     };
-    add_drift(-1, count);
+    add_drift(-1, 0, 0);
     try_all();
     for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
       const auto first = std::find(recording_.trial.begin(), recording_.trial.end(), trial);
@@ -319,7 +316,7 @@ class FaultSearch {
       const int begin = static_cast<int>(first - recording_.trial.begin());
       const int end = begin + static_cast<int>(std::count(first, recording_.trial.end(), trial));
       add(trial, begin);
-      if (recording_.trials.size() > 1) add_drift(trial, end - begin);
+      if (recording_.trials.size() > 1) add_drift(trial, begin, end);
       try_all();
       if (end == count) continue;  // to the end of the trial is to the end of the recording
       try_splits(begin, end, std::max(1, (end - begin) / kTrialSplits), [&](int split) {
