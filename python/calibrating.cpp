@@ -262,7 +262,7 @@ py::dict Compare(const Path& a, const Path& b, double level, bool new_markers) {
   const ComparisonRun run = Unlocked(
       [&] { return CompareCalibrations(a, b, {.level = level, .new_markers = new_markers}); });
   const CalibrationComparison& found = run.comparison;
-  py::list moved, parameters, markers;
+  py::list moved, parameters, markers, soles;
   py::dict or_markers;
   for (const JointDifference& joint : found.joints) {
     if (!joint.moved) continue;
@@ -278,6 +278,11 @@ py::dict Compare(const Path& a, const Path& b, double level, bool new_markers) {
                                "a"_a = one.a, "b"_a = one.b, "difference"_a = one.difference,
                                "sd"_a = one.sd, "p"_a = one.p));
   }
+  for (const SoleDifference& one : run.soles) {
+    soles.append(py::dict("leg"_a = one.leg, "a"_a = one.a, "b"_a = one.b,
+                          "difference"_a = one.b - one.a, "sd"_a = one.sd,
+                          "significant"_a = one.significant()));
+  }
   py::dict result;
   result["changed"] = found.changed;
   result["moved"] = moved;
@@ -285,6 +290,7 @@ py::dict Compare(const Path& a, const Path& b, double level, bool new_markers) {
   result["markers"] = markers;
   result["suspects"] = found.suspects;
   result["parameters"] = parameters;
+  result["soles"] = soles;
   result["warnings"] = found.warnings;
   return result;
 }
@@ -362,7 +368,8 @@ void AddCalibrating(py::module_& module) {
              "new_markers"_a = false,
              "Tells which joints moved between two saved calibrations: a dict with 'changed', "
              "'moved', 'or_markers' (by moved joint, links whose markers may have moved as one "
-             "piece instead), 'suspects', 'markers' (by link, whether they are 'same'), 'warnings' "
+             "piece instead), 'suspects', 'markers' (by link, whether they are 'same'), 'soles' "
+             "(springs, m/N), 'warnings' "
              "and 'parameters' (values in SI units). new_markers: markers were taken off in "
              "between.");
 }

@@ -246,7 +246,7 @@ def check(
 def compare(a: _Path, b: _Path, *, level: float = 0.05, new_markers: bool = False) -> dict[str, Any]:
     """Tells which joints moved between two saved calibrations: a dict with 'changed', 'moved', 'or_markers' (by
     moved joint, links whose markers may have moved as one piece instead), 'suspects', 'markers' (by link, whether
-    they are 'same'), 'warnings' and 'parameters' (values in SI units). new_markers: markers were taken off in
+    they are 'same'), 'soles' (springs, m/N), 'warnings' and 'parameters' (values in SI units). new_markers: markers were taken off in
     between."""
 def read(
     file: _Path, *, unit: str = "", topic: str = "", tf_frame: str = "", tf_bodies: Sequence[str] = ...,

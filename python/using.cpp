@@ -6,6 +6,7 @@
 #include "elastocal/io/motion_file.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/compensate_motion.hpp"
+#include "elastocal/planning/expected_errors.hpp"
 #include "elastocal/report/version.hpp"
 #include "motions.hpp"
 
@@ -64,6 +65,7 @@ PyCompensation Compensate(const Path& calibration, const py::object& motion, con
   made.result = CompensateMotion(
       made.robot.project, MakeRuntimeModel(made.robot.project, made.robot.calibration, wanted),
       given, {.loads = with, .most_left_m = 1e-3 * most_left_mm});
+  made.result.expected = ExpectErrors(made.robot, made.result.planned.motion);
   std::string why;
   for (const std::string& reason : made.result.broken) why += (why.empty() ? "" : "; ") + reason;
   if (!why.empty()) throw Infeasible("the corrected motion must not be played: " + why);

@@ -124,9 +124,7 @@ int Compensate(const CompensateOptions& options) {
       {.loads = options.loads == "planned" ? MotionLoads::kPlanned : MotionLoads::kStatics,
        .most_left_m = 1e-3 * options.most_left_mm,
        .ease_s = options.ease_s});
-  result.expected = ExpectErrors(
-      robot.project, robot.calibration,
-      ReadCalibrationFiles(FindCalibrationFiles(robot.calibration.source)), result.planned.motion);
+  result.expected = ExpectErrors(robot, result.planned.motion);
   const bool fine = result.broken.empty();
   if (fine) outputs.Set(options.output, FormatMotionTable(robot.project.tree, result.planned));
   outputs.Set(options.common.json_file, MakeCompensationJson(result));

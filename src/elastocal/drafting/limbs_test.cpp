@@ -72,7 +72,7 @@ int CountLegs(const std::string& urdf) {
 }
 
 TEST(Limbs, ArmsThatEndLowestAreNoLegs) {
-  EXPECT_EQ(CountLegs(UpperBody(0.4, 0.1)), 0) << "shoulders above the root link";
+  EXPECT_EQ(CountLegs(UpperBody(0.35, 0.1)), 0) << "shoulders above the root link";
   EXPECT_EQ(CountLegs(UpperBody(-0.1, 0.5)), 2) << "hips";
 }
 

@@ -2,6 +2,7 @@
 #include "elastocal/io/recording_folder.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <future>
 #include <numbers>
 #include <set>
@@ -204,10 +205,13 @@ std::string DescribeMissing(const std::string& joint, double position,
   for (const std::string& name : trials) names += (names.empty() ? "" : ", ") + name;
   const bool slides =
       project.tree.joints[FindJoint(project.tree, joint)].type == JointType::kPrismatic;
+  char place[64];
+  std::snprintf(place, sizeof place, "%.6g %s",
+                slides ? 1e3 * position : 180.0 / std::numbers::pi * position,
+                slides ? "mm" : "deg");
   return joint + ": only some logs have its positions; in those of " + names +
-         " it is taken to stand still at " +
-         FormatNumber(slides ? 1e3 * position : 180.0 / std::numbers::pi * position) +
-         (slides ? " mm" : " deg") + ", as the project says (recording.not_recorded)";
+         " it is taken to stand still at " + place +
+         ", as the project says (recording.not_recorded)";
 }
 
 }  // namespace

@@ -20,6 +20,8 @@ constexpr int kFewestMoved = 3;        // columns: of two, they are exchanged
 constexpr double kLeastFrozen_s = 2.0;
 constexpr double kJumpSpreads_s = 1.2;       // the filter spreads the jump at either end
 constexpr double kPartFits = 0.9;            // correlation in a part of the log that is not wrong
+constexpr double kAboutAsLikely = 0.9;       // of the best correlation: a lag that may be right
+constexpr double kNearer = 0.9;              // of the distances of markers: clearly nearer
 constexpr std::size_t kMostByPositions = 6;  // mistakes whose positions are compared
 
 /// By coordinate: whether the joint is between the standing link and a marker.
@@ -180,10 +182,11 @@ std::optional<Candidate> BestByPositions(std::vector<Candidate> candidates, cons
   return *best;
 }
 
-/// The clock or, where two lags are as likely, that of the one at which positions leave least.
+/// The clock or, where two lags are about as likely, that of the one at which positions leave
+/// least.
 template <typename LeftBy>
 ClockFit NearestClock(const SmoothedLog& log, const ClockFit& clock, const LeftBy& left_by) {
-  if (clock.state != ClockState::kAmbiguous) return clock;
+  if (!(clock.second_peak > kAboutAsLikely * clock.peak)) return clock;
   ClockFit other = clock;
   other.lag_s = clock.second_lag_s;
   other.drift_ppm = 0.0;
@@ -225,11 +228,10 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
   const auto left_without = [&](const Candidate& one) {
     return left_by(WithoutMistake(log, one.mistake), one.fit);
   };
+  const double left = left_by(log, NearestClock(log, clock, left_by));
   const auto chosen = BestByPositions(std::move(candidates), left_without);
   std::optional<LogMistake> best;
-  if (chosen && left_without(*chosen) < left_by(log, NearestClock(log, clock, left_by))) {
-    best = chosen->mistake;
-  }
+  if (chosen && left_without(*chosen) < kNearer * left) best = chosen->mistake;
   const LoggedSpeeds logged = PredictSpeeds(robot, markers, standing, log, coordinates, rate_hz);
   for (const int column : columns) {
     const auto [still_from, still_to] = LongestStill(log, columns, column);
@@ -241,6 +243,7 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
         expected_lag_s, options);
     if (fit.state != ClockState::kReliable || fit.peak < least_peak) continue;
     if (CorrelationOfPart(logged, speeds, rate_hz, fit, begin, end) > kPartFits) continue;
+    if (!(left_by(WithoutSpan(log, begin, end), fit) < left)) continue;
     if (!best || fit.peak > best->peak) best = {column, column, fit.peak, still_from, still_to};
   }
   return best;

@@ -226,7 +226,8 @@ class TrialSampler {
         FindLogMistake(robot_, markers_, seen.links, smoothed_log_, coordinates_, seen.speeds,
                        PositionsFrom(seen), options_.expected_lag_s, ClockSettings(), clock);
     if (mistake) return Describe(clock) + "; " + Describe(*mistake, log_.names);
-    if (clock.state == ClockState::kAmbiguous && TellByPositions(seen)) return "";
+    const bool copied = !DescribeCopies(smoothed_log_, log_.names).empty();
+    if (clock.state == ClockState::kAmbiguous && !copied && TellByPositions(seen)) return "";
     const std::string cause = CauseOfBadClock(seen);
     if (!cause.empty()) return Describe(clock) + cause;
     const bool vague =
@@ -249,7 +250,7 @@ class TrialSampler {
   /// There and back, speeds agree at two lags, maybe best one motion too late; positions agree at
   /// one of them. Whether they tell it.
   bool TellByPositions(const Motion& seen) {
-    constexpr double kAsWell = 0.99, kBothFit = 0.99, kNear_s = 0.3;
+    constexpr double kAsWell = 0.99, kBothFit = 0.99, kAsLong = 0.85, kNear_s = 0.3;
     ClockFit& clock = summary().clock;
     const bool told = clock.state == ClockState::kReliable;
     if (clock.second_peak < (told ? kAsWell * clock.peak : kBothFit)) return false;
@@ -260,8 +261,10 @@ class TrialSampler {
     near.longest_lag_s = kNear_s;
     const ClockFit there =
         EstimateTrialClock(seen.speeds, trajectories_.rate_hz, SpeedsOfLog(seen), *lag_s, near);
-    if (there.state == ClockState::kReliable) clock = there;
-    return there.state == ClockState::kReliable;
+    const bool long_enough = !told || there.overlap_s >= kAsLong * clock.overlap_s;
+    const bool better = there.state == ClockState::kReliable && long_enough;
+    if (better) clock = there;
+    return better;
   }
 
   void Refine(const Motion& seen) {

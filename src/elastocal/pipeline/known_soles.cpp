@@ -28,6 +28,7 @@ std::vector<SoleSpring> KnownSoles(const Project& project, const CalibrationResu
                                    const std::filesystem::path& earlier) {
   std::vector<FootRest> rests = measured.foot_rests;
   for (const Recording* recording : {&measured.calibration, &measured.validation}) {
+    if (rests.empty()) break;
     ShareWeights(project.tree, project.markers, *recording, TrialsIn(*recording, measured.trials),
                  rests);
   }

@@ -11,6 +11,7 @@
 #include "elastocal/calibration/frames_from_link.hpp"
 #include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
 
 namespace elastocal {
 namespace {
@@ -84,7 +85,9 @@ std::vector<ExpectedAtLimb> ExpectErrors(const Project& project,
   std::map<int, Squares> by_link;
   for (const auto& [from, rows] : RowsByStandingLink(project, motion)) {
     std::vector<int> others = links;
-    std::erase(others, from);
+    const int standing = project.tree.links[Size(from)].body;
+    std::erase_if(others,
+                  [&](int link) { return project.tree.links[Size(link)].body == standing; });
     const auto count = static_cast<double>(rows.size());
     for (const FramePrecision& frame :
          AssessFramesFrom(from, known, motion.q(rows, Eigen::all), others)) {
@@ -103,6 +106,11 @@ std::vector<ExpectedAtLimb> ExpectErrors(const Project& project,
         {name, std::sqrt(sum.position / sum.count), std::sqrt(sum.attitude / sum.count)});
   }
   return expected;
+}
+
+std::vector<ExpectedAtLimb> ExpectErrors(const CalibratedRobot& robot, const JointMotion& motion) {
+  const CalibrationFiles files = FindCalibrationFiles(robot.calibration.source);
+  return ExpectErrors(robot.project, robot.calibration, ReadCalibrationFiles(files), motion);
 }
 
 }  // namespace elastocal

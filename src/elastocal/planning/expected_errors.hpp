@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "elastocal/io/calibration_file.hpp"
+#include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/robot/joint_motion.hpp"
 #include "elastocal/validation/common_parameters.hpp"
@@ -28,5 +29,9 @@ std::vector<ExpectedAtLimb> ExpectErrors(const Project& project,
                                          const StoredCalibration& calibration,
                                          const CalibrationEstimate& estimate,
                                          const JointMotion& motion);
+
+/// The same of a calibration in files, whose covariance is read. Throws InputError where the file
+/// of the covariance cannot be used.
+std::vector<ExpectedAtLimb> ExpectErrors(const CalibratedRobot& robot, const JointMotion& motion);
 
 }  // namespace elastocal

@@ -15,10 +15,10 @@ namespace {
 /// What joints move weighs more than anything of that size; empty where it does not.
 std::string WarnOfHeavyParts(double moved_kg, double width_m) {
   constexpr double kMost = 300.0;  // kg/m^3 of a cube as wide as the robot: they weigh 2 to 64
-  if (moved_kg <= kMost * width_m * width_m * width_m) return "";
+  if (width_m <= 0.0 || moved_kg <= kMost * width_m * width_m * width_m) return "";
   char text[200];
   std::snprintf(text, sizeof text,
-                "the parts that joints move weigh %.4g kg, in a robot that reaches %.2g m: are the "
+                "the parts that joints move weigh %.0f kg, in a robot that reaches %.2g m: are the "
                 "masses of the URDF in kg?",
                 moved_kg, 0.5 * width_m);
   return text;

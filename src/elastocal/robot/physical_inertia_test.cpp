@@ -65,7 +65,7 @@ TEST(PhysicalInertia, WarnsOfMassesInGrams) {
   link.mass = 20e3;
   ASSERT_EQ(InertiaWarnings(tree).size(), 1U);
   EXPECT_EQ(InertiaWarnings(tree)[0],
-            "the parts that joints move weigh 2e+04 kg, in a robot that reaches 1 m: are the "
+            "the parts that joints move weigh 20000 kg, in a robot that reaches 1 m: are the "
             "masses of the URDF in kg?");
 }
 

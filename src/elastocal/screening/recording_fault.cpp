@@ -238,8 +238,10 @@ std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
                   slides ? "mm" : "deg");
     text += drifts ? ": its positions drift" : ": its positions are off";
     if (drifts) {
-      const std::string of_trial =
-          fault.trial < 0 ? "" : " of trial " + recording.trials[fault.trial].name;
+      const std::string of_trial = fault.trial < 0
+                                       ? ""
+                                       : " of trial " + recording.trials[fault.trial].name +
+                                             " (or the markers that it carries creep)";
       return text + number + " from the first posture to the last" + of_trial;
     }
   } else {
