@@ -308,7 +308,9 @@ class FaultSearch {
       const bool long_enough = end == 0 || end - begin >= 2 * kLeastSide;
       if (of.linkage < 0 && long_enough) add(trial, begin, end, FaultKind::kJointDrift);
     };
-    add_drift(-1, 0, 0);
+    // Of one that the cameras see in one trial, a drift over all of them would be as likely.
+    const bool several = recording_.trials.size() > 1;
+    if (!several) add_drift(-1, 0, 0);
     try_all();
     for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
       const auto first = std::find(recording_.trial.begin(), recording_.trial.end(), trial);
@@ -316,7 +318,7 @@ class FaultSearch {
       const int begin = static_cast<int>(first - recording_.trial.begin());
       const int end = begin + static_cast<int>(std::count(first, recording_.trial.end(), trial));
       add(trial, begin);
-      if (recording_.trials.size() > 1) add_drift(trial, begin, end);
+      if (several) add_drift(trial, begin, end);
       try_all();
       if (end == count) continue;  // to the end of the trial is to the end of the recording
       try_splits(begin, end, std::max(1, (end - begin) / kTrialSplits), [&](int split) {
