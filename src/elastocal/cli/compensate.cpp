@@ -16,7 +16,6 @@
 #include "elastocal/io/motion_file.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
-#include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/compensate_motion.hpp"
 #include "elastocal/planning/planned_motion_file.hpp"

@@ -226,8 +226,9 @@ class TrialSampler {
         FindLogMistake(robot_, markers_, seen.links, smoothed_log_, coordinates_, seen.speeds,
                        PositionsFrom(seen), options_.expected_lag_s, ClockSettings(), clock);
     if (mistake) return Describe(clock) + "; " + Describe(*mistake, log_.names);
-    const bool copied = !DescribeCopies(smoothed_log_, log_.names).empty();
-    if (clock.state == ClockState::kAmbiguous && !copied && TellByPositions(seen)) return "";
+    const std::string copies = DescribeCopies(smoothed_log_, log_.names);
+    if (!copies.empty()) return Describe(clock) + "; " + copies;
+    if (clock.state == ClockState::kAmbiguous && TellByPositions(seen)) return "";
     const std::string cause = CauseOfBadClock(seen);
     if (!cause.empty()) return Describe(clock) + cause;
     const bool vague =
@@ -281,8 +282,6 @@ class TrialSampler {
   }
 
   std::string CauseOfBadClock(const Motion& seen) const {
-    const std::string copies = DescribeCopies(smoothed_log_, log_.names);
-    if (!copies.empty()) return "; " + copies;
     const auto means = TakeMeanSpeeds(seen.speeds, trajectories_.rate_hz, SpeedsOfLog(seen),
                                       options_.expected_lag_s, ClockSettings());
     if (!means) return "";
