@@ -135,6 +135,9 @@ TEST(LogMistakes, JointsThatMoveOneAfterTheOtherAreNotFrozen) {
   };
   const auto found = find(clean, 0.999);
   EXPECT_FALSE(found) << Describe(*found, clean.log.names);
+  // Where one joint moves at a time, speeds agree with the other sign as well; positions do not.
+  const auto by_speeds = find(clean, 0.5);
+  EXPECT_FALSE(by_speeds) << Describe(*by_speeds, clean.log.names);
 
   ScriptedTrial frozen = clean;  // of a joint that moves in the middle
   const Eigen::Index rows = clean.log.positions.rows();
