@@ -273,7 +273,7 @@ def write_table(
 ) -> None:
     """Writes a table of static postures (CSV) that calibrate() and the program read. positions: (postures, joints),
     rad or m, by Project.joints. markers: (postures, markers, 3), m, NaN where not seen, by Project.markers unless
-    `marker_names` names them. Columns have the default names of docs/formats.md."""
+    `marker_names` names them. Columns have the project's names (`recording.columns` of docs/formats.md)."""
 def design(
     project: Union[Project, _Path],
     *,

@@ -112,7 +112,7 @@ void WriteTable(const ProjectOrFile& project_or_file, const Path& file, const Ro
   }
   recording.markers = Eigen::Map<const RowMajor>(markers.data(), postures, 3 * count);
   ExpectPositions(recording, CoordinateNames(project.tree));
-  WritePostureTable(file, recording, project.tree);
+  WritePostureTable(file, recording, project);
 }
 
 }  // namespace
@@ -136,7 +136,7 @@ void AddRecordings(py::module_& module) {
              "Writes a table of static postures (CSV) that calibrate() and the program read. "
              "positions: (postures, joints), rad or m, by Project.joints. markers: (postures, "
              "markers, 3), m, NaN where not seen, by Project.markers unless `marker_names` names "
-             "them. Columns have the default names of docs/formats.md.");
+             "them. Columns have the project's names (`recording.columns` of docs/formats.md).");
 }
 
 }  // namespace elastocal::python

@@ -44,7 +44,7 @@ int QuickDemo(const QuickDemoOptions& options) {
   const KnownTruth truth = DrawUpperBodyErrors(project, seed);
   const Recording recording = MakeSyntheticRecording(
       truth.model, truth.delta, {.postures = options.postures, .seed = seed + 1});
-  WritePostureTable(folder / "recording.csv", recording, project.tree);
+  WritePostureTable(folder / "recording.csv", recording, project);
   Print(
       options.common.Silent(),
       fmt::format("A TALOS with known errors, {} random postures of its upper body, 0.2 mm marker "

@@ -271,6 +271,14 @@ PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
 
 void WritePostureTable(const std::filesystem::path& file, const Recording& recording,
                        const RobotTree& tree) {
+  Project project;  // without columns of its own
+  project.tree = tree;
+  WritePostureTable(file, recording, project);
+}
+
+void WritePostureTable(const std::filesystem::path& file, const Recording& recording,
+                       const Project& project) {
+  const RobotTree& tree = project.tree;
   Eigen::MatrixXd q = recording.q;
   const RobotTree named = JointsToMotors(tree, recording.joints_not_recorded, q);
   const bool timed = recording.time_s.size() > 0;
@@ -282,11 +290,11 @@ void WritePostureTable(const std::filesystem::path& file, const Recording& recor
     if (recorded) coordinates.push_back(c);
   }
   TableWriter table;
-  if (timed) table.Add(RecordingColumns().time);
+  if (timed) table.Add(project.recording.time);
   for (const std::string& marker : recording.marker_names) {
-    for (const std::string& column : DefaultMarkerColumns(marker)) table.Add(column);
+    for (const std::string& column : MarkerColumns(project, marker)) table.Add(column);
   }
-  for (int c : coordinates) table.Add(JointOfCoordinate(named, c).name);
+  for (int c : coordinates) table.Add(JointColumn(project, JointOfCoordinate(named, c).name));
   table.EndRow();
   for (int i = 0; i < recording.posture_count(); ++i) {
     if (timed) table.Add(recording.time_s[i]);

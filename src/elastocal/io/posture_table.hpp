@@ -31,7 +31,11 @@ PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& 
 PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
                               const Project& project);
 
-/// Writes a recording as such a table, under the default column names.
+/// Writes a recording as such a table, under the column names of the project.
+void WritePostureTable(const std::filesystem::path& file, const Recording& recording,
+                       const Project& project);
+
+/// The same, under the default column names.
 void WritePostureTable(const std::filesystem::path& file, const Recording& recording,
                        const RobotTree& tree);
 

@@ -330,6 +330,13 @@ TEST(PostureTable, WritesWhatItReads) {
   EXPECT_EQ(second.joints_not_recorded, first.joints_not_recorded);
   EXPECT_FALSE(Seen(second, 0, 0));
   EXPECT_EQ(second.markers.row(1), first.markers.row(1));
+  const Project renamed = TableProject(
+      "{columns: {time: seconds, markers: {A: [X, Y, Z]}, joints: {elbow_joint: axis 4}}}");
+  WritePostureTable(file, first, renamed);
+  const Recording third = ReadPostureTable(file, renamed).recording;
+  EXPECT_EQ(third.q, first.q);
+  EXPECT_EQ(third.time_s, first.time_s);
+  EXPECT_EQ(third.markers.row(1), first.markers.row(1));
 }
 
 TEST(PostureTable, NamesWithSeparatorsAndQuotesSurvive) {
