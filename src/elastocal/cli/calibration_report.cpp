@@ -198,9 +198,8 @@ std::string NominalPlacesText(const NominalPlaces& places) {
   return fmt::format(
       "The places of markers in the project are off by {0:.1f} mm (sd of a coordinate), where the "
       "recording tells it\n(in {1:.0f} directions). If those of hands, feet and waist were "
-      "measured "
-      "as well as the others, say so\n(calibration: {{prior: {{marker_mm: {0:.1f}}}}}): the errors "
-      "above become smaller.\n",
+      "measured as well as the\nothers, say so (calibration: {{prior: {{marker_mm: {0:.1f}}}}}): "
+      "the errors above become smaller.\n",
       1e3 * places.sd, places.directions);
 }
 
