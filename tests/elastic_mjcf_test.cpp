@@ -54,8 +54,11 @@ class ElasticMjcf : public testing::Test {
     const CalibratedUrdf apart = MakeCalibratedUrdf(ReadFile(project_.urdf), project_.urdf.string(),
                                                     result, ZeroOffsets::kEncoder);
     const RobotTree calibrated = ParseUrdf(apart.text, "calibrated");
+    std::vector<SeriesSpring> springs = SeriesSprings(result, calibrated, legs_);
+    const auto soles = SpringsOfSoles(stored_.soles, calibrated, legs_);
+    springs.insert(springs.end(), soles.begin(), soles.end());
     return MakeCalibratedMjcf(user, "user.xml", project_.tree, calibrated, apart.encoder_offsets,
-                              SeriesSprings(result, calibrated, legs_));
+                              springs);
   }
 
   static Model Load(const std::string& text) {
@@ -120,6 +123,67 @@ class ElasticMjcf : public testing::Test {
     mj_kinematics(&model, &data);
   }
 
+  /// Of the root link on the left foot, which is held to the floor, m: by how much it gives way,
+  /// and how far MuJoCo has it from there.
+  struct Stands {
+    double deflection = 0.0, off = 0.0;
+  };
+
+  Stands OnLeftFoot(const Eigen::VectorXd& q) const {
+    const Leg& leg = *std::ranges::find(legs_, std::string("leg_left"), &Leg::chain);
+    const Joint& ankle = project_.tree.joints[static_cast<std::size_t>(leg.joints.back())];
+    const std::string foot = LinkName(ankle.child_link);
+    Compensator elastic(MakeRuntimeModel(project_, stored_));
+    Compensator rigid(MakeRuntimeModel(project_, stored_, RuntimeContent::kGeometry));
+    const StandingFeet feet = 1u << (&leg - legs_.data());
+    rigid.Forward(q, Eigen::VectorXd(), 0);
+    Transform T_root_foot = Transform::Identity();  // the sole's link, flat on the floor
+    T_root_foot.matrix() = rigid.link_pose(leg.foot_link).matrix();
+    const Transform T_world_root = Transform(leg.R_floor_foot) * T_root_foot.inverse();
+
+    const std::string text = Export(UserModel{project_.tree}.Text(true));
+    const auto put = [&](const mjModel& model, mjData& data) {
+      const Eigen::Quaterniond quaternion(T_world_root.linear());
+      Eigen::Map<Eigen::Vector3d>(data.qpos) = T_world_root.translation();
+      Eigen::Map<Eigen::Vector4d>(data.qpos + 3) << quaternion.w(), quaternion.vec();
+      Put(model, q, data);
+      mj_kinematics(&model, &data);
+    };
+    const Model floating = Load(text);
+    const Data there(mj_makeData(floating.get()), &mj_deleteData);
+    put(*floating, *there);
+    const Transform T_foot_world = BodyPose(*floating, *there, foot).inverse();
+    const Eigen::Quaterniond turn(T_foot_world.linear());
+    const Eigen::Vector3d shift = T_foot_world.translation();
+    const std::string weld = fmt::format(
+        "<equality><weld body1=\"{}\" relpose=\"{} {} {} {} {} {} {}\" solref=\"0.005 1\" "
+        "solimp=\"0.999 0.9999 0.001\"/></equality></mujoco>",
+        foot, shift.x(), shift.y(), shift.z(), turn.w(), turn.x(), turn.y(), turn.z());
+    const Model model = Load(text.substr(0, text.rfind("</mujoco>")) + weld);
+    const Data data(mj_makeData(model.get()), &mj_deleteData);
+    put(*model, *data);
+    Play(*model, 5.0, *data);
+
+    const Eigen::VectorXd encoders = Encoders(*model, *data);
+    const Transform T_foot_root =
+        BodyPose(*model, *data, foot).inverse() *
+        BodyPose(
+            *model, *data,
+            LinkName(
+                project_.tree.joints[static_cast<std::size_t>(leg.joints.front())].parent_link));
+    elastic.Forward(encoders, Eigen::VectorXd(), feet);
+    rigid.Forward(encoders, Eigen::VectorXd(), feet);
+    // Of the sole in the body of the foot.
+    const Transform T_body_sole =
+        project_.tree.links[static_cast<std::size_t>(ankle.child_link)].T_body_link.inverse() *
+        project_.tree.links[static_cast<std::size_t>(leg.foot_link)].T_body_link;
+    const Eigen::Vector3d root = (T_body_sole.inverse() * T_foot_root).translation();
+    const double deflection =
+        (elastic.root_pose().translation() - rigid.root_pose().translation()).norm();
+    const double off = (elastic.root_pose().translation() - root).norm();
+    return {deflection, off};
+  }
+
   Project project_;
   StoredCalibration stored_;
   std::vector<NamedChain> chains_;
@@ -132,6 +196,8 @@ constexpr double kShare = 1e-3;
 /// The springs of a leg are in the axes of its foot, which is inclined against the root link here
 /// by some tenths of a radian.
 constexpr double kShareOnLeg = 0.03;
+/// The spring of a sole bears all but the link of the foot in MuJoCo.
+constexpr double kShareOfFoot = 0.03;
 
 TEST_F(ElasticMjcf, HangsAsTheElasticModelDoes) {
   TakeAway("leg_left");  // of legs as a whole, which a held root does not load
@@ -163,59 +229,20 @@ TEST_F(ElasticMjcf, HangsAsTheElasticModelDoes) {
 
 TEST_F(ElasticMjcf, StandsOnOneFootAsTheElasticModelDoes) {
   TakeAway("leg_right");  // which swings, and stretches in MuJoCo by its own weight
-  const Eigen::VectorXd q = Posture(7);
-  const Leg& leg = *std::ranges::find(legs_, std::string("leg_left"), &Leg::chain);
-  const Joint& ankle = project_.tree.joints[static_cast<std::size_t>(leg.joints.back())];
-  const std::string foot = LinkName(ankle.child_link);
-  Compensator elastic(MakeRuntimeModel(project_, stored_));
-  Compensator rigid(MakeRuntimeModel(project_, stored_, RuntimeContent::kGeometry));
-  const StandingFeet feet = 1u << (&leg - legs_.data());
-  rigid.Forward(q, Eigen::VectorXd(), 0);
-  Transform T_root_foot = Transform::Identity();  // the sole's link, flat on the floor
-  T_root_foot.matrix() = rigid.link_pose(leg.foot_link).matrix();
-  const Transform T_world_root = Transform(leg.R_floor_foot) * T_root_foot.inverse();
+  const Stands stands = OnLeftFoot(Posture(7));
+  EXPECT_GT(stands.deflection, 1e-2);
+  EXPECT_LT(stands.off, kShareOnLeg * stands.deflection);
+}
 
-  const std::string text = Export(UserModel{project_.tree}.Text(true));
-  const auto put = [&](const mjModel& model, mjData& data) {
-    const Eigen::Quaterniond quaternion(T_world_root.linear());
-    Eigen::Map<Eigen::Vector3d>(data.qpos) = T_world_root.translation();
-    Eigen::Map<Eigen::Vector4d>(data.qpos + 3) << quaternion.w(), quaternion.vec();
-    Put(model, q, data);
-    mj_kinematics(&model, &data);
-  };
-  const Model floating = Load(text);
-  const Data there(mj_makeData(floating.get()), &mj_deleteData);
-  put(*floating, *there);
-  const Transform T_foot_world = BodyPose(*floating, *there, foot).inverse();
-  const Eigen::Quaterniond turn(T_foot_world.linear());
-  const Eigen::Vector3d shift = T_foot_world.translation();
-  const std::string weld = fmt::format(
-      "<equality><weld body1=\"{}\" relpose=\"{} {} {} {} {} {} {}\" solref=\"0.005 1\" "
-      "solimp=\"0.999 0.9999 0.001\"/></equality></mujoco>",
-      foot, shift.x(), shift.y(), shift.z(), turn.w(), turn.x(), turn.y(), turn.z());
-  const Model model = Load(text.substr(0, text.rfind("</mujoco>")) + weld);
-  const Data data(mj_makeData(model.get()), &mj_deleteData);
-  put(*model, *data);
-  Play(*model, 5.0, *data);
-
-  const Eigen::VectorXd encoders = Encoders(*model, *data);
-  const Transform T_foot_root =
-      BodyPose(*model, *data, foot).inverse() *
-      BodyPose(
-          *model, *data,
-          LinkName(project_.tree.joints[static_cast<std::size_t>(leg.joints.front())].parent_link));
-  elastic.Forward(encoders, Eigen::VectorXd(), feet);
-  rigid.Forward(encoders, Eigen::VectorXd(), feet);
-  // Of the sole in the body of the foot.
-  const Transform T_body_sole =
-      project_.tree.links[static_cast<std::size_t>(ankle.child_link)].T_body_link.inverse() *
-      project_.tree.links[static_cast<std::size_t>(leg.foot_link)].T_body_link;
-  const Eigen::Vector3d root = (T_body_sole.inverse() * T_foot_root).translation();
-  const double deflection =
-      (elastic.root_pose().translation() - rigid.root_pose().translation()).norm();
-  const double off = (elastic.root_pose().translation() - root).norm();
-  EXPECT_GT(deflection, 1e-2);
-  EXPECT_LT(off, kShareOnLeg * deflection);
+// It is below the ankle: how the leg is inclined does not matter.
+TEST_F(ElasticMjcf, ASoleSinksAsTheElasticModelDoes) {
+  for (auto& [name, value] : stored_.joint_errors) {
+    if (name.find(".compliance") != std::string::npos) value = 0.0;
+  }
+  stored_.soles = {{.leg = "leg_left", .changes = 2, .compliance = 1e-5, .sd = 1e-7}};
+  const Stands stands = OnLeftFoot(Posture(7));
+  EXPECT_GT(stands.deflection, 5e-3);
+  EXPECT_LT(stands.off, kShareOfFoot * stands.deflection);
 }
 
 TEST_F(ElasticMjcf, WithoutCompliancesNothingIsAdded) {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What gives way below the markers of the feet, at run time.
-#include <algorithm>
-
 #include <gtest/gtest.h>
 
 #include "elastocal/robot/legs.hpp"
 #include "elastocal/robot/statics.hpp"
+#include "elastocal/simulation/virtual_robot.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/runtime_fixture.hpp"
 
@@ -41,26 +40,55 @@ TEST_F(Runtime, ASoleSinksByTheWholeWeight) {
   ExpectInputError([&] { Make(); }, {"soles", "leg_lefd", "leg_left"});
 }
 
-TEST_F(Runtime, OnTwoFeetTheSolesSinkByWhatTheLegsBear) {
+TEST_F(Runtime, OnTwoFeetEachSoleSinksByWhatItBears) {
   for (auto& [name, value] : stored_.joint_errors) value = 0.0;  // the feet share evenly
   Compensator firm = Make();
-  const std::vector<Leg> legs = Legs();
-  for (const Leg& leg : legs) {
+  const double weight = 9.81 * TotalMass(project_.tree);
+  for (const Leg& leg : Legs()) {
     stored_.soles.push_back({.leg = leg.chain, .changes = 2, .compliance = 1e-6, .sd = 1e-8});
   }
   Compensator soft = Make();
   firm.Forward(project_.motion.rest, kNoTorque, 3);
   soft.Forward(project_.motion.rest, kNoTorque, 3);
   const double sunk = firm.root_pose().translation().z() - soft.root_pose().translation().z();
-  double leg = 0.0;
-  for (const Link& link : project_.tree.links) {
-    const int joint = link.body - 1;
-    if (std::ranges::find(legs[0].joints, joint) != legs[0].joints.end()) leg += link.mass;
+  EXPECT_NEAR(sunk, 0.5e-6 * weight, 1e-6);
+}
+
+// A lifted leg hangs on its own springs, and a calibration takes it as it hangs. Standing on one
+// foot then tells the compliance of the leg, which on two feet is to give way as in the simulator.
+TEST_F(Runtime, OnTwoFeetLegsGiveWayAsTheirSpringsDo) {
+  TrueRobot robot = NominalRobot(project_.tree, project_.markers, Legs(), {});
+  for (const Leg& leg : robot.legs) {
+    for (int k : leg.joints) robot.link_compliance[static_cast<std::size_t>(k)][2] = 1e-6;  // m/N
   }
-  const double all = TotalMass(project_.tree);
-  EXPECT_NEAR(sunk, 1e-6 * 9.81 * (0.5 * all - leg) * all / (all - leg), 2e-6);
-  // The legs' own weight, of which this has too little, is a fifth of what the soles bear.
-  EXPECT_NEAR(sunk / (0.5e-6 * 9.81 * all), 0.8, 0.05);
+  const int left = Legs()[0].foot_link, right = Legs()[1].foot_link;
+  const auto height = [&](const std::vector<int>& support) {
+    PhysicsOptions physics;
+    physics.servo_stiffness *= 1e3;
+    VirtualRobot body(robot, support, project_.motion.rest, physics);
+    EXPECT_TRUE(body.Settle());
+    return (body.LinkPose(left).inverse() * body.WaistPose()).translation().z();
+  };
+  const double hanging = height({}), on_one = hanging - height({left}),
+               on_two = hanging - height({left, right});
+  ASSERT_GT(on_one, 4e-3);
+  for (auto& [name, value] : stored_.joint_errors) value = 0.0;
+  Compensator rigid = Make();
+  const auto sinks = [&](StandingFeet feet) {
+    Compensator elastic = Make();
+    rigid.Forward(project_.motion.rest, kNoTorque, feet);
+    elastic.Forward(project_.motion.rest, kNoTorque, feet);
+    return rigid.root_pose().translation().z() - elastic.root_pose().translation().z();
+  };
+  const auto set = [&](double compliance) {
+    stored_.joint_errors.at("leg_left.compliance_z") = compliance;
+    stored_.joint_errors.at("leg_right.compliance_z") = compliance;
+  };
+  set(1e-6);
+  set(1e-6 * on_one / sinks(1));
+  EXPECT_NEAR(sinks(1), on_one, 1e-3 * on_one);
+  // By the whole of the legs' weight, it would be a fifth less.
+  EXPECT_NEAR(sinks(3), on_two, 0.02 * on_two);
 }
 
 }  // namespace

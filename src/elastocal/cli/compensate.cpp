@@ -68,7 +68,8 @@ std::string DescribeExpected(const std::vector<ExpectedAtLimb>& expected) {
          "Seen from the standing foot: what the calibration does not know of the geometry. A "
          "single robot may have\ntwice as much. Springs in fast motion and a stabiliser come on "
          "top. Measured places of markers on hands,\nfeet and waist make it less (calibrate "
-         "--marker-places)\n";
+         "--marker-places), and so does a floor whose level is known\nbetter (calibration: "
+         "{floor_tilt_deg: ...})\n";
 }
 
 std::string DescribeCompensation(const CompensatedMotion& result, const RobotTree& tree) {

@@ -125,6 +125,10 @@ class SpringWriter {
     if (joints.contains(SpringPlace::kJoint)) {
       edits_.push_back(InFrontOf(text_, motor, joints[SpringPlace::kJoint]));
     }
+    // Behind the motor's: it turns with the foot.
+    if (joints.contains(SpringPlace::kSole)) {
+      edits_.push_back({motor.End(), 0, joints[SpringPlace::kSole]});
+    }
     // One body takes six joints at most: root link and leg get bodies of their own.
     const std::string name = body.element.Text("name");
     std::string begin, end;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/description/series_springs.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/transform.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
@@ -98,6 +100,24 @@ std::vector<SeriesSpring> SeriesSprings(const CalibrationResult& calibration,
                     T_child_twisted * Eigen::Vector3d(0, 0, constants.centre),
                     constants.compliance[axis]);
     }
+  }
+  return std::move(collector.springs);
+}
+
+std::vector<SeriesSpring> SpringsOfSoles(const std::vector<SoleSpring>& soles,
+                                         const RobotTree& calibrated,
+                                         const std::vector<Leg>& legs) {
+  SpringCollector collector;
+  for (const SoleSpring& sole : soles) {
+    const auto leg = std::ranges::find(legs, sole.leg, &Leg::chain);
+    if (!sole.told() || leg == legs.end() || leg->joints.empty()) continue;
+    const int last = leg->joints.back();
+    const Link& ankle = calibrated.links[Size(calibrated.joints[Size(last)].child_link)];
+    const Transform T_ankle_foot =
+        ankle.T_body_link.inverse() * calibrated.links[Size(leg->foot_link)].T_body_link;
+    const Eigen::Vector3d up = leg->R_floor_foot.transpose() * Eigen::Vector3d::UnitZ();
+    collector.Add(last, SpringPlace::kSole, sole.leg + ".compliance_sole", true,
+                  T_ankle_foot.linear() * up, T_ankle_foot.translation(), sole.compliance);
   }
   return std::move(collector.springs);
 }

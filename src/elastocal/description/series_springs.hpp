@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/sole_springs.hpp"
 #include "elastocal/robot/legs.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 
@@ -17,6 +18,7 @@ enum class SpringPlace {
   kLeg,       ///< a leg as a whole (eq. 6), in front of its first joint
   kRootLink,  ///< the root link, as the joint sees it
   kJoint,     ///< the joint, in front of its motor (eq. 5)
+  kSole,      ///< what is below a foot, behind the motor of the leg's last joint
 };
 
 /// A spring in series with the motor of a joint, whose encoder does not see how far it gives way:
@@ -43,5 +45,11 @@ struct SeriesSpring {
 /// on the root link has none. Compliances of 0 are left out.
 std::vector<SeriesSpring> SeriesSprings(const CalibrationResult& calibration,
                                         const RobotTree& calibrated, const std::vector<Leg>& legs);
+
+/// What gives way below the feet, of those that are told: along the axis that is upright while the
+/// foot is flat, in the frame of the child link of the leg's last joint. That link is then on the
+/// floor's side of the spring: its own weight is no load.
+std::vector<SeriesSpring> SpringsOfSoles(const std::vector<SoleSpring>& soles,
+                                         const RobotTree& calibrated, const std::vector<Leg>& legs);
 
 }  // namespace elastocal

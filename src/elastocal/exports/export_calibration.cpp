@@ -106,6 +106,8 @@ std::string MjcfOf(const CalibratedRobot& robot, const StoredCalibration& calibr
   if (options.mjcf_springs) {
     springs = SeriesSprings(ResultOf(RestoreRobot(robot.project, calibration)), calibrated,
                             LegsOf(robot.project));
+    const auto soles = SpringsOfSoles(calibration.soles, calibrated, LegsOf(robot.project));
+    springs.insert(springs.end(), soles.begin(), soles.end());
   }
   const std::string text = MakeCalibratedMjcf(
       ReadFile(options.mjcf), file, robot.project.tree, calibrated, apart.encoder_offsets, springs,

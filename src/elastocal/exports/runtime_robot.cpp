@@ -246,8 +246,8 @@ void MarkLegs(const RobotTree& tree, const std::vector<Leg>& legs, RuntimeModel&
 }
 
 /// What gives way below the markers of a foot is a part of its leg. Eq. 6 has the load that the
-/// waist puts on the leg, but the sole bears the leg as well: on one foot this is the same factor
-/// in all postures. (On two it is somewhat more, by which the soles then sink less than they do.)
+/// waist puts on the leg, but the sole bears the leg as well: the same factor for all postures and
+/// shares of the weight (ec_leg_load).
 void AddSoles(const StoredCalibration& calibration, RuntimeModel& model) {
   const double total = std::accumulate(model.mass.begin(), model.mass.end(), 0.0);
   for (const SoleSpring& sole : calibration.soles) {

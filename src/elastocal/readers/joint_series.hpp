@@ -24,8 +24,9 @@ JointSeries SortSeries(const std::string& place, std::vector<std::string> names,
                        const std::vector<std::int64_t>& stamps,
                        const std::vector<double>& positions, const std::vector<double>& efforts);
 
-/// One log: the messages with the most joints give the times; joints that only others have are
-/// interpolated at these times, and rows where that is not possible are left out, as `notes` say.
+/// One log: the series with the most values (joints times messages) gives the times. Joints that
+/// only others have are interpolated at these times, and rows where that is not possible are left
+/// out, as `notes` say.
 JointLog MergeSeries(const std::string& source, const std::vector<JointSeries>& all,
                      std::vector<std::string>& notes);
 

@@ -259,10 +259,13 @@ static inline void ec_loads(const ec_robot* robot, const ec_joint* joints, unsig
 }
 
 /* What the waist puts on the leg of foot f: force and moment at the root link's origin, in its
-   axes. The opposite is borne by the floor, or is the leg's own weight. */
+   axes. The opposite is borne by the floor, or is the leg's own weight. A leg that is lifted hangs
+   on what gives way in it, and the geometry has it as it hangs. From there on each spring of it
+   bears what the floor bears, so that half the weight deflects it by half as much: its own weight
+   counts by the share of the foot, all of it on one foot as where it was calibrated. */
 static inline void ec_leg_load(const ec_robot* robot, int f, const double* gravity,
                                const ec_memory* memory, double* force, double* moment) {
-  const double held = memory->share[f] * robot->total_mass;
+  const double share = memory->share[f], held = share * robot->total_mass;
   double mass = -held, first[3], turned[3];
   int k, i;
   for (i = 0; i < 3; ++i) {
@@ -271,8 +274,10 @@ static inline void ec_leg_load(const ec_robot* robot, int f, const double* gravi
   for (k = 0; k <= robot->joints; ++k) {
     if (robot->leg_of_body[k] != f) continue;
     ec_rotate(memory->body[k].R, &robot->moment[3 * k], turned);
-    mass += robot->mass[k];
-    for (i = 0; i < 3; ++i) first[i] += turned[i] + robot->mass[k] * memory->body[k].p[i];
+    mass += share * robot->mass[k];
+    for (i = 0; i < 3; ++i) {
+      first[i] += share * (turned[i] + robot->mass[k] * memory->body[k].p[i]);
+    }
   }
   ec_cross(gravity, first, moment);
   for (i = 0; i < 3; ++i) force[i] = -mass * gravity[i];

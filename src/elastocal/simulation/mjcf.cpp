@@ -52,8 +52,11 @@ class MjcfWriter {
 
   std::string text;
 
-  std::string Friction() const {
-    return Attribute("friction", Number(options_.floor_friction) + " 0.01 0.001");
+  /// What touches the floor. It gives way by hundredths of a millimetre under a robot on one foot:
+  /// soles give way by springs of their own (MuJoCo's default gives way by half a millimetre).
+  std::string OnFloor() const {
+    return Attribute("friction", Number(options_.floor_friction) + " 0.01 0.001") +
+           R"( solimp="0.99 0.99 0.001")";
   }
 
   /// Writes the tables, far below.
@@ -141,7 +144,7 @@ class MjcfWriter {
             "/>\n";
     if (free) {
       text += "<geom" + Shape(SoleOf(support_[static_cast<std::size_t>(sole)], options_)) +
-              " mass=\"0\"" + Friction() + "/>\n";
+              " mass=\"0\"" + OnFloor() + "/>\n";
     }
     text += "</body>\n";
   }
@@ -331,7 +334,7 @@ MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
   }
   std::string constraints;
   if (stands_freely) {
-    writer.text += R"(<geom type="plane" size="5 5 0.1")" + writer.Friction() + "/>\n";
+    writer.text += R"(<geom type="plane" size="5 5 0.1")" + writer.OnFloor() + "/>\n";
   } else {
     for (std::size_t s = 0; s < support.size(); ++s) constraints += Weld(s, model.T_world_foot[s]);
   }

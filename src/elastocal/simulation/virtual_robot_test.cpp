@@ -207,6 +207,8 @@ TEST(VirtualRobot, StandsFreeOnBothFeet) {
   for (int i = 0; i < 1000; ++i) body.Step();
   EXPECT_NEAR(body.WaistPose().translation().z(), height, 2e-3);
   EXPECT_LT(RotationAngle(body.WaistPose().linear()), 0.01);
+  // The floor is as firm as where feet are held: what gives way are the springs of the robot.
+  for (int sole : {0, 1}) EXPECT_NEAR(body.SolePose(sole).translation().z(), 0.0, 5e-5);
 }
 
 TEST(VirtualRobot, NeedsFeetToStandOn) {
