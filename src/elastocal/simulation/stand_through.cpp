@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "elastocal/math/rotation_vector.hpp"
@@ -34,21 +36,44 @@ void MoveTo(const JointMotion& motion, double time_s, Between& between) {
   between.share = std::clamp((time_s - motion.time_s[at]) / span, 0.0, 1.0);
 }
 
-/// Distance of the zero-moment point to the edge of the loaded soles, m.
-double ZmpMargin(const VirtualRobot& body, const std::vector<Sole>& soles) {
-  const auto [force, moment] = body.FloorWrench();
-  std::vector<Sole> standing;
-  std::vector<Transform> T_world_sole;
-  for (std::size_t i = 0; i < soles.size(); ++i) {
-    const Transform T = body.SolePose(static_cast<int>(i));
-    const double pressed = T.linear().row(2).dot(body.SoleWrench(static_cast<int>(i)).head<3>());
-    if (!(pressed > kLoaded * force.z())) continue;
-    standing.push_back(soles[i]);
-    T_world_sole.push_back(T);
+/// Contact forces, averaged over the latest looks at the robot.
+class AverageContact {
+ public:
+  explicit AverageContact(std::size_t looks) : looks_(looks) {}
+
+  void Add(const VirtualRobot& body, std::size_t soles) {
+    const auto [force, moment] = body.FloorWrench();
+    Eigen::VectorXd now(6 + static_cast<Eigen::Index>(soles));
+    now << force, moment, Eigen::VectorXd::Zero(now.size() - 6);
+    for (std::size_t i = 0; i < soles; ++i) {
+      const int sole = static_cast<int>(i);
+      now[6 + sole] = body.SolePose(sole).linear().row(2).dot(body.SoleWrench(sole).head<3>());
+    }
+    latest_.push_back(std::move(now));
+    if (latest_.size() > looks_) latest_.pop_front();
   }
-  if (standing.empty()) return -std::numeric_limits<double>::infinity();
-  return InsideMargin(SupportPolygon(standing, T_world_sole), ZeroMomentPoint(force, moment));
-}
+
+  /// Distance of the zero-moment point to the edge of the loaded soles, m.
+  double ZmpMargin(const VirtualRobot& body, const std::vector<Sole>& soles) const {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(latest_.front().size());
+    for (const Eigen::VectorXd& look : latest_) sum += look;
+    std::vector<Sole> standing;
+    std::vector<Transform> T_world_sole;
+    for (std::size_t i = 0; i < soles.size(); ++i) {
+      if (!(sum[6 + static_cast<Eigen::Index>(i)] > kLoaded * sum[2])) continue;
+      standing.push_back(soles[i]);
+      T_world_sole.push_back(body.SolePose(static_cast<int>(i)));
+    }
+    if (standing.empty()) return -std::numeric_limits<double>::infinity();
+    return InsideMargin(SupportPolygon(standing, T_world_sole),
+                        ZeroMomentPoint(sum.head<3>(), sum.segment<3>(3)));
+  }
+
+ private:
+  std::size_t looks_;
+  std::deque<Eigen::VectorXd>
+      latest_;  // floor: force, moment; force on each sole along the vertical
+};
 
 /// What those who put a robot down do with their hands: they turn its waist upright, with the
 /// moment of a spring that would hold its weight twice over and of a damper, in the world's axes.
@@ -111,6 +136,8 @@ class StandingPlay {
         height_(body_.Height()),
         per_look_(std::max(1L, std::lround(kLook / body_.time_step_s()))),
         interval_s_(static_cast<double>(per_look_) * body_.time_step_s()),
+        contact_(static_cast<std::size_t>(
+            std::ceil(std::sqrt(height_ / kGravity.norm()) / interval_s_))),
         correction_(Eigen::VectorXd::Zero(motion.q.cols())) {}
 
   StandingRun Run() {
@@ -187,7 +214,8 @@ class StandingPlay {
     run.largest_lean = std::max(run.largest_lean, std::acos(std::clamp(upright, -1.0, 1.0)));
     run.tracking = std::max(
         run.tracking, TrackingError(robot_, body_.Encoders(), now.Of(commanded_) + correction_));
-    run.least_zmp_margin = std::min(run.least_zmp_margin, ZmpMargin(body_, soles_));
+    contact_.Add(body_, soles_.size());
+    run.least_zmp_margin = std::min(run.least_zmp_margin, contact_.ZmpMargin(body_, soles_));
     const Eigen::VectorXd planned = now.Of(motion_.q);
     if (options_.watch) options_.watch(now.at, planned, body_);
     if (options_.stabiliser == nullptr) return;
@@ -204,6 +232,7 @@ class StandingPlay {
   double height_;  // of what falls, m
   long per_look_;  // steps of the simulation between two looks
   double interval_s_;
+  AverageContact contact_;
   Eigen::Matrix3d R_root_unit_ = Eigen::Matrix3d::Identity();
   Eigen::VectorXd correction_;  // by the stabiliser, to what is commanded
 };
