@@ -3,6 +3,7 @@
 #include "elastocal/mistakes/recordings_apart.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "elastocal/math/random.hpp"
 #include "elastocal/mistakes/find_faults.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/trial_offset.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "tests/standing_humanoid.hpp"
 
@@ -47,7 +49,7 @@ class RecordingsApart : public testing::Test {
 
   std::string SaidOf(const Recording& recording) const {
     return FindRecordingsApart(robot_.project, {robot_.model, robot_.base}, recording,
-                               FitOf(recording));
+                               FitOf(recording), std::numeric_limits<double>::infinity());
   }
 
   /// What calibrate says of it.
@@ -132,6 +134,23 @@ TEST_F(RecordingsApart, TrialsOfAnotherRobotAreNamed) {
   const std::string two = mixed_with({"monday/torso_arm_left", "monday/torso_arm_right"});
   EXPECT_NE(two.find("monday/torso_arm_left, monday/torso_arm_right ("), std::string::npos) << two;
   EXPECT_NE(two.find("monday/leg_left, monday/leg_right ("), std::string::npos) << two;
+}
+
+// Before a trial: robots of their own explain each trial as well.
+TEST_F(RecordingsApart, AJointThatWasHomedAnewIsFoundInAnyTrial) {
+  Recording recording = Record(truth_, "monday", 0);
+  const RobotTree& tree = robot_.project.tree;
+  const int joint = tree.joints[FindJoint(tree, "leg_left_2_joint")].coordinate;
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    const std::string& trial = recording.trials[Size(recording.trial[Size(i)])].name;
+    if (trial == "monday/torso_arm_left") recording.q(i, joint) += 0.08;
+  }
+  const auto found =
+      FindTrialOffset(FitOf(recording), robot_.base, recording, {}, {}, OffsetTrials::kAny);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->coordinate, joint);
+  EXPECT_EQ(recording.trials[Size(found->trial)].name, "monday/torso_arm_left");
+  EXPECT_NEAR(found->size, 0.08, 0.001);
 }
 
 TEST_F(RecordingsApart, MarkersThatWereGluedOnAnewAreNoOtherRobot) {

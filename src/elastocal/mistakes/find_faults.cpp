@@ -14,6 +14,7 @@
 #include "elastocal/mistakes/missed_springs.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/recordings_apart.hpp"
+#include "elastocal/mistakes/spoiling_cluster.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/mistakes/trial_offset.hpp"
 #include "elastocal/mistakes/tried_correction.hpp"
@@ -22,7 +23,6 @@
 #include "elastocal/screening/camera_scale.hpp"
 #include "elastocal/screening/carrying_link.hpp"
 #include "elastocal/screening/coarse_positions.hpp"
-#include "elastocal/screening/loose_clusters.hpp"
 #include "elastocal/screening/odd_postures.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 #include "elastocal/screening/up_by_torques.hpp"
@@ -152,15 +152,6 @@ std::vector<std::string> OddBesideCalibrated(const Project& project, const Recor
   return said;
 }
 
-/// Markers that are so far off in each posture that nothing is worth calibrating by them.
-std::vector<std::string> TooLoose(const Project& project, const Recording& recording,
-                                  const CalibrationResult& result) {
-  const auto loose =
-      FindLooseCluster(result, recording, SeenClusters(project, recording), project.calibration);
-  if (!loose || !IsTooLoose(*loose)) return {};
-  return {Describe(*loose)};
-}
-
 /// The steps of FindFaults, the plainest faults first: what one leaves looks like the next.
 class FaultsInTurn {
  public:
@@ -201,9 +192,9 @@ class FaultsInTurn {
     if (!few_->complete && LeavesMoreThanCameras(fit(), left_)) {
       const std::string motion = FindUnrecordedMotion(project_, robot_, recording_, fit());
       if (!motion.empty()) return {motion};
-      const std::string apart = FindRecordingsApart(project_, robot_, recording_, fit());
-      if (!apart.empty()) return {apart};
     }
+    const std::string apart = OfRecordingsApart();
+    if (!apart.empty()) return {apart};
     if (!gears_.empty()) return OfGears();
     return found_ ? OfGeneralFault() : OfFewRowsOrMarkers();
   }
@@ -256,6 +247,46 @@ class FaultsInTurn {
     few_ = found_ ? ExplainFault(*found_, project_) : FaultsInWords();
   }
 
+  /// What looks like another robot may be one joint that is off in the trial in which it stands: it
+  /// displaces all that the trial shows.
+  void LookInTrials() {
+    const auto offset = FindTrialOffset(fit(), robot_.base, recording_, project_.calibration,
+                                        as_recorded_.validation, OffsetTrials::kAny);
+    if (!offset) return;
+    const FoundFault one{{*offset, robot_.model, robot_.base, recording_, fit().kind,
+                          project_.calibration, as_recorded_.validation},
+                         true};
+    FaultsInWords words = ExplainFault(one, project_);
+    if (!words.complete) return;
+    found_ = one;
+    few_ = std::move(words);
+  }
+
+  /// Whether what was found is of one trial, or begins with one: trials of another robot look so.
+  bool IsOfTrials() const {
+    if (!found_ || recording_.trials.empty()) return false;
+    constexpr int kBeside = 2;  // postures
+    const RecordingFault& fault = found_->fault;
+    const int last = recording_.posture_count() - 1;
+    return fault.trial >= 0 || recording_.trial[Size(std::max(0, fault.posture - kBeside))] !=
+                                   recording_.trial[Size(std::min(last, fault.posture + kBeside))];
+  }
+
+  /// A joint that is off in one trial explains much of a trial of another robot, too: there, robots
+  /// of their own leave far less than that.
+  std::string OfRecordingsApart() {
+    if (few_->complete && !IsOfTrials()) return "";
+    const double left = few_->complete ? std::min(left_, few_->left) : left_;
+    if (!LeavesMoreThanCameras(fit(), left)) return "";
+    const std::string apart = FindRecordingsApart(project_, robot_, recording_, fit(), left);
+    if (apart.empty() || few_->complete) return apart;
+    LookInTrials();
+    const bool one_joint =
+        few_->complete &&
+        FindRecordingsApart(project_, robot_, recording_, fit(), few_->left).empty();
+    return one_joint ? "" : apart;
+  }
+
   /// Faults of joints load them as another direction of gravity might.
   std::vector<std::string> OfUpByLoads() {
     const auto up = FindUpByLoads(project_, seed_, as_recorded_, left_);
@@ -291,7 +322,7 @@ class FaultsInTurn {
     if (!few_->complete) {
       const auto odd = OddBesideCalibrated(project_, robot_, recording_, fit(), left_);
       if (!odd.empty()) return odd;
-      const auto loose = TooLoose(project_, recording_, fit());
+      const auto loose = FindSpoilingCluster(project_, robot_, recording_, fit());
       if (!loose.empty()) return loose;
     }
     if (!found_->of_one_trial || !few_->complete) return {few_->text};
@@ -304,7 +335,7 @@ class FaultsInTurn {
         OddBesideCalibrated(project_, robot_, recording_, fit(), left_);
     if (!faults.empty()) return faults;
     const auto scattered = FindScatteredPositions(fit(), recording_, project_.calibration);
-    if (!scattered) return TooLoose(project_, recording_, fit());
+    if (!scattered) return FindSpoilingCluster(project_, robot_, recording_, fit());
     if (!IsTooLoose(*scattered, project_.tree)) return {};
     return {Describe(*scattered, project_.tree)};
   }

@@ -100,7 +100,8 @@ std::string DescribeFolders(const Project& project, const Recording& recording,
 }
 
 std::string FindFoldersApart(const Project& project, const RecordedModel& robot,
-                             const Recording& recording, const CalibrationResult& together) {
+                             const Recording& recording, const CalibrationResult& together,
+                             double most) {
   std::vector<PartOfRecording> folders = FoldersOf(recording);
   std::vector<double> errors;
   std::erase_if(folders, [&](const PartOfRecording& folder) {
@@ -115,7 +116,8 @@ std::string FindFoldersApart(const Project& project, const RecordedModel& robot,
     judged.insert(judged.end(), folder.postures.begin(), folder.postures.end());
   }
   std::ranges::sort(judged);
-  const double left = MarkerError(together, SelectPostures(recording, judged), project.calibration);
+  const double left =
+      std::min(most, MarkerError(together, SelectPostures(recording, judged), project.calibration));
   const double apart = ErrorOverParts(recording, folders, errors);
   if (!AreApart(apart, left)) return "";
   return DescribeFolders(project, recording, together, folders, errors, left, apart);
@@ -128,11 +130,12 @@ bool LeavesMoreThanCameras(const CalibrationResult& result, double left) {
 }
 
 std::string FindRecordingsApart(const Project& project, const RecordedModel& robot,
-                                const Recording& recording, const CalibrationResult& together) {
+                                const Recording& recording, const CalibrationResult& together,
+                                double most) {
   if (recording.trials.empty()) return "";
-  const std::string folders = FindFoldersApart(project, robot, recording, together);
+  const std::string folders = FindFoldersApart(project, robot, recording, together, most);
   if (!folders.empty()) return folders;
-  return FindTrialsApart(robot, recording, together, project.calibration);
+  return FindTrialsApart(robot, recording, together, most, project.calibration);
 }
 
 }  // namespace elastocal

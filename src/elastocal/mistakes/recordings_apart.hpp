@@ -23,8 +23,9 @@ bool LeavesMoreThanCameras(const CalibrationResult& result, double left);
 ///
 /// **Trials** of a folder: see FindTrialsApart.
 ///
-/// `recording`: that of `together`.
+/// `recording`: that of `together`; `most`: what another explanation leaves, m.
 std::string FindRecordingsApart(const Project& project, const RecordedModel& robot,
-                                const Recording& recording, const CalibrationResult& together);
+                                const Recording& recording, const CalibrationResult& together,
+                                double most);
 
 }  // namespace elastocal

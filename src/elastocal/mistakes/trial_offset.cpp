@@ -91,6 +91,19 @@ void AddOffsets(const CalibrationResult& result, const Recording& recording,
   }
 }
 
+/// Of no joint yet.
+std::vector<TrialOffset> OfEachTrial(const Recording& recording) {
+  std::vector<TrialOffset> offsets;
+  for (int trial = 0; trial < std::ssize(recording.trials); ++trial) {
+    const auto first = std::ranges::find(recording.trial, trial);
+    if (std::ranges::count(recording.trial, trial) < kFewestOfTrial) continue;
+    offsets.push_back({{.kind = FaultKind::kJointOffset,
+                        .trial = trial,
+                        .posture = static_cast<int>(first - recording.trial.begin())}});
+  }
+  return offsets;
+}
+
 /// Of all joints in the trials of these, beside the errors of the robot, which take a part of each:
 /// the one that explains most first.
 std::vector<RecordingFault> OffsetsBesideErrors(const CalibrationResult& result,
@@ -145,14 +158,15 @@ std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
                                               const BaseParameters& base,
                                               const Recording& recording,
                                               const CalibrationOptions& options,
-                                              const Recording& held_out) {
+                                              const Recording& held_out, OffsetTrials in) {
   if (recording.trials.size() < kFewestTrials) return std::nullopt;
   const RobotTree& tree = result.model.tree;
   const Eigen::VectorXd given = SquaresByPosture(result, recording, options);
   std::vector<TrialOffset> offsets;
+  if (in == OffsetTrials::kAny) offsets = OfEachTrial(recording);
   for (const int k : result.model.active_joints) {
     const Joint& joint = tree.joints[Size(k)];
-    if (joint.mimic || IsMovedByRods(tree, k)) continue;
+    if (in == OffsetTrials::kAny || joint.mimic || IsMovedByRods(tree, k)) continue;
     AddOffsets(result, recording, options, given, joint, offsets);
   }
   std::stable_sort(offsets.begin(), offsets.end(),

@@ -8,6 +8,9 @@
 
 namespace elastocal {
 
+/// The trials of FindTrialOffset: those in which one joint takes half of the squares, or all.
+enum class OffsetTrials { kFarOff, kAny };
+
 /// A joint that is off by a constant in one trial, where noise hides it from FindRecordingFaults: a
 /// leg that stands there is off by more than it gives way, and what ties the waist to its foot
 /// counts the less. Each joint is moved in each trial, by what brings the markers nearest to where
@@ -16,11 +19,13 @@ namespace elastocal {
 /// of the robot, and the four that explain most are undone, one by one, and the robot fitted again.
 /// Nothing unless one leaves half of the error, and none without which held-out trials, which do
 /// not have it, are predicted worse: what explains the estimate's trials alone is something else
-/// that the model lacks. `held_out` may be empty.
+/// that the model lacks. `held_out` may be empty. kAny: where trials contradict each other, a fit
+/// has spread the offset over all of them; the offsets of all joints in each trial are estimated.
 std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
                                               const BaseParameters& base,
                                               const Recording& recording,
                                               const CalibrationOptions& options,
-                                              const Recording& held_out = {});
+                                              const Recording& held_out = {},
+                                              OffsetTrials in = OffsetTrials::kFarOff);
 
 }  // namespace elastocal

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kLeftApart = 0.5;     // of the error of one robot
 constexpr double kLeastGain = 0.2e-3;  // m, of that error
+constexpr double kMostOfSet = 3.0;     // times the error of all apart
 constexpr std::size_t kMostTrials = 12;
 
 double CountSeen(const Recording& recording, const std::vector<int>& postures) {
@@ -179,11 +180,14 @@ double ErrorAlone(const RecordedModel& robot, const Recording& part, ModelKind k
 }
 
 std::string FindTrialsApart(const RecordedModel& robot, const Recording& recording,
-                            const CalibrationResult& together, const CalibrationOptions& options) {
+                            const CalibrationResult& together, double most,
+                            const CalibrationOptions& options) {
   if (recording.trials.size() > kMostTrials) return "";
   const TrialsTogether trials(robot, recording, together, options);
-  if (!AreApart(trials.apart(), trials.left())) return "";
-  const std::vector<OneRobot> sets = trials.Sets(std::sqrt(trials.apart() * trials.left()));
+  const double left = std::min(most, trials.left());
+  if (!AreApart(trials.apart(), left)) return "";
+  const std::vector<OneRobot> sets =
+      trials.Sets(std::min(std::sqrt(trials.apart() * left), kMostOfSet * trials.apart()));
   if (sets.size() < 2) return "";
   std::string explained;
   for (std::size_t k = 0; k < sets.size(); ++k) {

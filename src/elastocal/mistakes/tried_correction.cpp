@@ -11,6 +11,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/mistakes/column_order.hpp"
 #include "elastocal/mistakes/log_alternatives.hpp"
+#include "elastocal/mistakes/suspected_signs.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/screening/label_check.hpp"
 #include "elastocal/screening/row_shift.hpp"
@@ -21,6 +22,13 @@ namespace {
 
 std::string NameOf(const LabelSuspicion& suspicion) {
   return "labels:" + std::min(suspicion.a, suspicion.b) + "," + std::max(suspicion.a, suspicion.b);
+}
+
+/// A sign that not all trials show. Columns are assigned once, so that it may be reversed in the
+/// others, too, where the joint hardly moves or moves about zero.
+bool IsOfSomeTrials(const LogSuspicion& one, const Recording& recording) {
+  return one.kind == LogContradiction::kSign && one.linkage < 0 && !recording.trials.empty() &&
+         std::ssize(one.postures) < recording.posture_count();
 }
 
 }  // namespace
@@ -69,8 +77,11 @@ std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel
   std::size_t frozen = 0, others = 0;
   for (const LogSuspicion& one : suspicions.log) {
     std::size_t& used = one.kind == LogContradiction::kFrozen ? frozen : others;
-    if (used < most) AddUndone(one, project.tree, recording, tried);
-    ++used;
+    if (used++ >= most) continue;
+    if (IsOfSomeTrials(one, recording)) {
+      AddUndone(SignOf(one.coordinate, recording), project.tree, recording, tried);
+    }
+    AddUndone(one, project.tree, recording, tried);
   }
   if (all) {
     std::vector<TriedCorrection> orders = FindColumnOrders(nominal, recording);
