@@ -150,7 +150,8 @@ void FuzzPostureFile(std::string_view bytes) {
     const auto again =
         ParsePostureFile(FormatPostureFile(project.tree, chains), "again.yaml", project);
     Demand(ListPostures(chains, "a").q.rows() == ListPostures(again, "b").q.rows());
-  } catch (const InputError&) {
+  } catch (const InputError& error) {
+    std::fputs(error.what(), stderr);
     std::abort();
   }
 }
@@ -252,6 +253,7 @@ extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** /*argv*/) {
     std::exit(name.empty() ? 0 : 2);
   }
   elastocal::target = found;
+  elastocal::TableProject();  // were it refused, so would be all that is read beside it
   return 0;
 }
 

@@ -11,7 +11,6 @@
 #include "elastocal/elastocal.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/mistakes/find_faults.hpp"
-#include "elastocal/mistakes/tried_correction.hpp"
 #include "elastocal/mistakes/up_by_loads.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/screening/carrying_link.hpp"
@@ -19,7 +18,7 @@
 #include "elastocal/screening/loose_clusters.hpp"
 #include "elastocal/screening/odd_postures.hpp"
 #include "elastocal/screening/recording_faults.hpp"
-#include "elastocal/simulation/synthetic_recording.hpp"
+#include "tests/faulty_arm.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -27,51 +26,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
-/// An arm with errors, and 48 postures of it.
-class GeneralFaults : public testing::Test {
- protected:
-  static Recording Record(const ErrorModel& model, const std::vector<int>& kept,
-                          std::uint64_t robot) {
-    const Eigen::VectorXd errors = DrawErrors(model, kept,
-                                              {{ParameterKind::kTheta, 0.5 * kDegree},
-                                               {ParameterKind::kAlpha, 0.2 * kDegree},
-                                               {ParameterKind::kR, 0.5e-3},
-                                               {ParameterKind::kD, 0.5e-3}},
-                                              robot);
-    return MakeSyntheticRecording(model, errors, {.postures = 48, .seed = 3});
-  }
-
-  int CoordinateOf(const std::string& name) const {
-    for (const Joint& joint : project_.tree.joints) {
-      if (joint.name == name) return joint.coordinate;
-    }
-    return -1;
-  }
-
-  void Turn(const std::string& joint, int begin, int end, double degrees) {
-    recorded_.q.col(CoordinateOf(joint)).segment(begin, end - begin).array() += degrees * kDegree;
-  }
-
-  /// Empty: nothing is found.
-  std::string Said() const {
-    const CalibrationResult fit = Calibrate(model_, recorded_, base_, kKind, project_.calibration);
-    const auto found = FindRecordingFaults(fit, recorded_, project_.calibration);
-    if (found.empty()) return "";
-    return ExplainFault({found.front(), model_, base_, recorded_, kKind, project_.calibration},
-                        project_)
-        .text;
-  }
-
-  static constexpr ModelKind kKind = ModelKind::kGeometric;
-  Project project_ = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
-  ErrorModel model_ = MakeErrorModel(project_.tree, project_.markers, project_.placement);
-  BaseParameters base_ = FindBaseParameters(model_, project_.identifiability);
-  Recording recorded_ = Record(model_, base_.kept, 1);
-};
-
-void ExpectIn(const std::string& text, const std::string& part) {
-  EXPECT_NE(text.find(part), std::string::npos) << text;
-}
+using GeneralFaults = FaultyArm;
 
 // The first guess is one slip of more than either, somewhere near the second one.
 TEST_F(GeneralFaults, AJointThatSlipsTwiceIsSaidToSlipTwice) {
@@ -347,43 +302,6 @@ TEST_F(GeneralFaults, MarkersThatAreElsewhereInEachPostureAreNamed) {
   EXPECT_EQ(little.find("cluster TOOL: its markers are elsewhere"), 0u) << little;
   EXPECT_EQ(little.find("too loose"), std::string::npos) << little;
   EXPECT_EQ(robot.find("the robot as a whole is elsewhere"), 0u) << robot;
-}
-
-// Above half a millimetre and below ten times what others are off by: what counts is that it spoils
-// what the others tell.
-TEST_F(GeneralFaults, AClusterThatSlipsSlowlyIsRefusedWhereItSpoilsWhatOthersTell) {
-  for (int m = 0; m < recorded_.marker_count(); ++m) {
-    if (!recorded_.marker_names[static_cast<std::size_t>(m)].starts_with("TOOL")) continue;
-    recorded_.markers.col(3 * m + 2) += Eigen::VectorXd::LinSpaced(48, 0.0, 8e-3);
-  }
-  Measurements measured;
-  measured.calibration = recorded_;
-  const ModelComparison comparison =
-      CompareModels(Calibrate(model_, recorded_, base_, kKind, project_.calibration), model_,
-                    recorded_, base_, project_.calibration);
-  const auto loose = FindLooseCluster(comparison.largest(), recorded_,
-                                      SeenClusters(project_, recorded_), project_.calibration);
-  ASSERT_TRUE(loose);
-  EXPECT_FALSE(IsTooLoose(*loose)) << Describe(*loose);
-  const std::vector<std::string> said =
-      FindFaults(project_, {}, measured, {model_, base_}, recorded_, comparison);
-  ASSERT_EQ(said.size(), 1u);
-  ExpectIn(said[0], "cluster TOOL: its markers are elsewhere");
-  ExpectIn(said[0], "Without it the error of all others falls");
-}
-
-// Three postures of a trial do not show it.
-TEST_F(GeneralFaults, ASignThatSomeTrialsShowIsTriedInAll) {
-  recorded_.trials = {{"long", TrialKind::kCalibration, {project_.chains.front().name}},
-                      {"short", TrialKind::kCalibration, {project_.chains.front().name}}};
-  recorded_.trial.assign(48, 0);
-  std::fill(recorded_.trial.end() - 3, recorded_.trial.end(), 1);
-  const Eigen::MatrixXd truth = recorded_.q;
-  recorded_.q.col(CoordinateOf("elbow_joint")) *= -1.0;
-  const std::vector<TriedCorrection> tried = Suspicions(project_, model_, recorded_, 3);
-  EXPECT_TRUE(std::ranges::any_of(tried, [&](const TriedCorrection& one) {
-    return one.name == "sign:elbow_joint" && one.corrected.q.isApprox(truth);
-  }));
 }
 
 TEST_F(GeneralFaults, MarkersOnAnotherLinkThanTheProjectSaysAreNamedWithIt) {

@@ -48,8 +48,10 @@ class RecordingsApart : public testing::Test {
   }
 
   std::string SaidOf(const Recording& recording) const {
-    return FindRecordingsApart(robot_.project, {robot_.model, robot_.base}, recording,
-                               FitOf(recording), std::numeric_limits<double>::infinity());
+    const auto apart =
+        FindRecordingsApart(robot_.project, {robot_.model, robot_.base}, recording,
+                            FitOf(recording), std::numeric_limits<double>::infinity());
+    return apart ? apart->said : "";
   }
 
   /// What calibrate says of it.
@@ -151,6 +153,11 @@ TEST_F(RecordingsApart, AJointThatWasHomedAnewIsFoundInAnyTrial) {
   EXPECT_EQ(found->coordinate, joint);
   EXPECT_EQ(recording.trials[Size(found->trial)].name, "monday/torso_arm_left");
   EXPECT_NEAR(found->size, 0.08, 0.001);
+  const std::string said = FaultsOf(recording);
+  EXPECT_NE(said.find("--accept offset:leg_left_2_joint@monday/torso_arm_left=4."),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(said.find("trials contradict each other"), std::string::npos) << said;
 }
 
 TEST_F(RecordingsApart, MarkersThatWereGluedOnAnewAreNoOtherRobot) {

@@ -152,6 +152,17 @@ std::vector<std::string> OddBesideCalibrated(const Project& project, const Recor
   return said;
 }
 
+/// Whether a fault is of one trial, or begins with one: trials of another robot look so.
+bool IsOfTrials(const RecordingFault& fault, const Recording& recording) {
+  constexpr int kBeside = 2;  // postures
+  if (recording.trials.empty()) return false;
+  if (fault.trial >= 0) return true;
+  if (fault.posture <= kBeside) return false;  // it is of all
+  const int last = recording.posture_count() - 1;
+  return recording.trial[Size(std::min(last, fault.posture - kBeside))] !=
+         recording.trial[Size(std::min(last, fault.posture + kBeside))];
+}
+
 /// The steps of FindFaults, the plainest faults first: what one leaves looks like the next.
 class FaultsInTurn {
  public:
@@ -248,43 +259,33 @@ class FaultsInTurn {
   }
 
   /// What looks like another robot may be one joint that is off in the trial in which it stands: it
-  /// displaces all that the trial shows.
-  void LookInTrials() {
+  /// displaces all that the trial shows. Whether such a joint explains as much as robots of their
+  /// own do, which leave this error, m.
+  bool IsOneJoint(double apart) {
     const auto offset = FindTrialOffset(fit(), robot_.base, recording_, project_.calibration,
                                         as_recorded_.validation, OffsetTrials::kAny);
-    if (!offset) return;
+    if (!offset) return false;
     const FoundFault one{{*offset, robot_.model, robot_.base, recording_, fit().kind,
                           project_.calibration, as_recorded_.validation},
                          true};
     FaultsInWords words = ExplainFault(one, project_);
-    if (!words.complete) return;
+    if (!words.complete || AreApart(apart, words.left)) return false;
     found_ = one;
     few_ = std::move(words);
-  }
-
-  /// Whether what was found is of one trial, or begins with one: trials of another robot look so.
-  bool IsOfTrials() const {
-    if (!found_ || recording_.trials.empty()) return false;
-    constexpr int kBeside = 2;  // postures
-    const RecordingFault& fault = found_->fault;
-    const int last = recording_.posture_count() - 1;
-    return fault.trial >= 0 || recording_.trial[Size(std::max(0, fault.posture - kBeside))] !=
-                                   recording_.trial[Size(std::min(last, fault.posture + kBeside))];
+    return true;
   }
 
   /// A joint that is off in one trial explains much of a trial of another robot, too: there, robots
   /// of their own leave far less than that.
   std::string OfRecordingsApart() {
-    if (few_->complete && !IsOfTrials()) return "";
+    const bool of_trials = std::ranges::any_of(
+        few_->faults, [&](const RecordingFault& fault) { return IsOfTrials(fault, recording_); });
+    if (few_->complete && !of_trials) return "";
     const double left = few_->complete ? std::min(left_, few_->left) : left_;
     if (!LeavesMoreThanCameras(fit(), left)) return "";
-    const std::string apart = FindRecordingsApart(project_, robot_, recording_, fit(), left);
-    if (apart.empty() || few_->complete) return apart;
-    LookInTrials();
-    const bool one_joint =
-        few_->complete &&
-        FindRecordingsApart(project_, robot_, recording_, fit(), few_->left).empty();
-    return one_joint ? "" : apart;
+    const auto apart = FindRecordingsApart(project_, robot_, recording_, fit(), left);
+    if (!apart || (!few_->complete && IsOneJoint(apart->error))) return "";
+    return apart->said;
   }
 
   /// Faults of joints load them as another direction of gravity might.

@@ -263,9 +263,12 @@ std::vector<RecordingMistake> FindMistakesBy(
       best = &one;
       return left < std::min(kClearlyRight * error, most_left);
     };
+    bool clear = false;
     for (const TriedCorrection& one : tried) {
+      // The same in other trials may be better still.
+      if (clear && (one.name.empty() || one.name != best->name)) break;
       if (one.only_leaves_out && best != nullptr && least < most_left) break;
-      if (try_one(one)) break;
+      clear = try_one(one) || clear;
     }
     if (best == nullptr) break;
     TriedCorrection found = *best;

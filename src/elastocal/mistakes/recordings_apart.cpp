@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -11,7 +12,6 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
-#include "elastocal/mistakes/trials_apart.hpp"
 #include "elastocal/recorded/find_base.hpp"
 #include "elastocal/screening/split_markers.hpp"
 
@@ -99,9 +99,9 @@ std::string DescribeFolders(const Project& project, const Recording& recording,
       1e3 * left, each);
 }
 
-std::string FindFoldersApart(const Project& project, const RecordedModel& robot,
-                             const Recording& recording, const CalibrationResult& together,
-                             double most) {
+std::optional<PartsApart> FindFoldersApart(const Project& project, const RecordedModel& robot,
+                                           const Recording& recording,
+                                           const CalibrationResult& together, double most) {
   std::vector<PartOfRecording> folders = FoldersOf(recording);
   std::vector<double> errors;
   std::erase_if(folders, [&](const PartOfRecording& folder) {
@@ -110,17 +110,17 @@ std::string FindFoldersApart(const Project& project, const RecordedModel& robot,
     if (std::isfinite(error)) errors.push_back(error);
     return !std::isfinite(error);
   });
-  if (folders.size() < 2) return "";
+  if (folders.size() < 2) return std::nullopt;
   std::vector<int> judged;
   for (const PartOfRecording& folder : folders) {
     judged.insert(judged.end(), folder.postures.begin(), folder.postures.end());
   }
   std::ranges::sort(judged);
-  const double left =
-      std::min(most, MarkerError(together, SelectPostures(recording, judged), project.calibration));
+  const double left = MarkerError(together, SelectPostures(recording, judged), project.calibration);
   const double apart = ErrorOverParts(recording, folders, errors);
-  if (!AreApart(apart, left)) return "";
-  return DescribeFolders(project, recording, together, folders, errors, left, apart);
+  if (!AreApart(apart, std::min(most, left))) return std::nullopt;
+  return PartsApart{DescribeFolders(project, recording, together, folders, errors, left, apart),
+                    apart};
 }
 
 }  // namespace
@@ -129,12 +129,12 @@ bool LeavesMoreThanCameras(const CalibrationResult& result, double left) {
   return left > kFarAbove * ScatterOfMarkers(result.noise);
 }
 
-std::string FindRecordingsApart(const Project& project, const RecordedModel& robot,
-                                const Recording& recording, const CalibrationResult& together,
-                                double most) {
-  if (recording.trials.empty()) return "";
-  const std::string folders = FindFoldersApart(project, robot, recording, together, most);
-  if (!folders.empty()) return folders;
+std::optional<PartsApart> FindRecordingsApart(const Project& project, const RecordedModel& robot,
+                                              const Recording& recording,
+                                              const CalibrationResult& together, double most) {
+  if (recording.trials.empty()) return std::nullopt;
+  const auto folders = FindFoldersApart(project, robot, recording, together, most);
+  if (folders) return folders;
   return FindTrialsApart(robot, recording, together, most, project.calibration);
 }
 

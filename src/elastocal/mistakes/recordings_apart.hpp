@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
+#include <optional>
 
 #include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/mistakes/trials_apart.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 
@@ -13,7 +14,7 @@ namespace elastocal {
 /// displace markers by (three times) that it is worth looking for why.
 bool LeavesMoreThanCameras(const CalibrationResult& result, double left);
 
-/// Recordings that no one robot explains, in words; empty where one does, and for tables.
+/// Recordings that no one robot explains; nothing where one does, and for tables.
 ///
 /// **Folders** that were given together. Each is fitted by itself. They are apart if that leaves
 /// less than half of the error of `together` (rms distance of the markers), and 0.2 mm less. Then
@@ -24,8 +25,8 @@ bool LeavesMoreThanCameras(const CalibrationResult& result, double left);
 /// **Trials** of a folder: see FindTrialsApart.
 ///
 /// `recording`: that of `together`; `most`: what another explanation leaves, m.
-std::string FindRecordingsApart(const Project& project, const RecordedModel& robot,
-                                const Recording& recording, const CalibrationResult& together,
-                                double most);
+std::optional<PartsApart> FindRecordingsApart(const Project& project, const RecordedModel& robot,
+                                              const Recording& recording,
+                                              const CalibrationResult& together, double most);
 
 }  // namespace elastocal

@@ -12,7 +12,8 @@ namespace elastocal {
 
 /// Markers that are so far off in each posture that nothing is worth calibrating by them
 /// (IsTooLoose), or that spoil what others tell: a fit without them leaves less than half of the
-/// error of all other markers. In words; empty: none.
+/// error of all other markers (ErrorAlone: no freedom of that fit is taken for its precision). In
+/// words; empty: none.
 std::vector<std::string> FindSpoilingCluster(const Project& project, const RecordedModel& robot,
                                              const Recording& recording,
                                              const CalibrationResult& result);

@@ -31,6 +31,7 @@ constexpr int kNewtonSteps = 2;
 constexpr double kLeastCurvature = 1e-12;  // of the squared distances
 constexpr int kFewestOfTrial = 3;          // postures
 constexpr std::size_t kFewestTrials = 2;
+constexpr std::size_t kMostOfAny = 12;  // trials, in each of which every joint is measured
 
 /// Of numbers by posture.
 Eigen::VectorXd SumsByTrial(const Eigen::VectorXd& by_posture, const Recording& recording) {
@@ -163,11 +164,14 @@ std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
   const RobotTree& tree = result.model.tree;
   const Eigen::VectorXd given = SquaresByPosture(result, recording, options);
   std::vector<TrialOffset> offsets;
-  if (in == OffsetTrials::kAny) offsets = OfEachTrial(recording);
-  for (const int k : result.model.active_joints) {
-    const Joint& joint = tree.joints[Size(k)];
-    if (in == OffsetTrials::kAny || joint.mimic || IsMovedByRods(tree, k)) continue;
-    AddOffsets(result, recording, options, given, joint, offsets);
+  if (in == OffsetTrials::kAny) {
+    if (recording.trials.size() <= kMostOfAny) offsets = OfEachTrial(recording);
+  } else {
+    for (const int k : result.model.active_joints) {
+      const Joint& joint = tree.joints[Size(k)];
+      if (joint.mimic || IsMovedByRods(tree, k)) continue;
+      AddOffsets(result, recording, options, given, joint, offsets);
+    }
   }
   std::stable_sort(offsets.begin(), offsets.end(),
                    [](const TrialOffset& a, const TrialOffset& b) { return a.left < b.left; });

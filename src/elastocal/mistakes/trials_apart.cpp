@@ -179,26 +179,27 @@ double ErrorAlone(const RecordedModel& robot, const Recording& part, ModelKind k
   }
 }
 
-std::string FindTrialsApart(const RecordedModel& robot, const Recording& recording,
-                            const CalibrationResult& together, double most,
-                            const CalibrationOptions& options) {
-  if (recording.trials.size() > kMostTrials) return "";
+std::optional<PartsApart> FindTrialsApart(const RecordedModel& robot, const Recording& recording,
+                                          const CalibrationResult& together, double most,
+                                          const CalibrationOptions& options) {
+  if (recording.trials.size() > kMostTrials) return std::nullopt;
   const TrialsTogether trials(robot, recording, together, options);
   const double left = std::min(most, trials.left());
-  if (!AreApart(trials.apart(), left)) return "";
+  if (!AreApart(trials.apart(), left)) return std::nullopt;
   const std::vector<OneRobot> sets =
       trials.Sets(std::min(std::sqrt(trials.apart() * left), kMostOfSet * trials.apart()));
-  if (sets.size() < 2) return "";
+  if (sets.size() < 2) return std::nullopt;
   std::string explained;
   for (std::size_t k = 0; k < sets.size(); ++k) {
     explained += fmt::format("{}{} ({:.3g} mm)", k == 0 ? "" : "; another one ",
                              NamesOf(sets[k].trials), 1e3 * sets[k].error);
   }
-  return fmt::format(
+  const std::string said = fmt::format(
       "trials contradict each other: all together leave an error of {:.3g} mm, each by itself "
       "{:.3g} mm. One robot explains {}. Are they of different robots or days, or was the robot "
       "changed in between? Leave the foreign ones out, or measure them again",
       1e3 * trials.left(), 1e3 * trials.apart(), explained);
+  return PartsApart{said, trials.apart()};
 }
 
 }  // namespace elastocal

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,13 @@ double ErrorOverParts(const Recording& recording, const std::vector<PartOfRecord
 double ErrorAlone(const RecordedModel& robot, const Recording& part, ModelKind kind,
                   const CalibrationOptions& options);
 
+/// Parts of a recording that no one robot explains, in words, and the error that robots of their
+/// own leave, m.
+struct PartsApart {
+  std::string said;
+  double error = 0.0;
+};
+
 /// Whether parts contradict each other: robots of their own leave less than half of the error that
 /// one robot leaves, and 0.2 mm less. Both m.
 bool AreApart(double error_apart, double error_together);
@@ -36,8 +44,8 @@ bool AreApart(double error_apart, double error_together);
 /// trial by trial. Trials that have too few equations are not judged; nothing is where more than 12
 /// are. `recording`: that of `together`; `most`: what another explanation of the recording leaves,
 /// m.
-std::string FindTrialsApart(const RecordedModel& robot, const Recording& recording,
-                            const CalibrationResult& together, double most,
-                            const CalibrationOptions& options);
+std::optional<PartsApart> FindTrialsApart(const RecordedModel& robot, const Recording& recording,
+                                          const CalibrationResult& together, double most,
+                                          const CalibrationOptions& options);
 
 }  // namespace elastocal

@@ -53,7 +53,11 @@ TriedCorrection Undone(const LogSuspicion& one, const RobotTree& tree, const Rec
 void AddUndone(const LogSuspicion& one, const RobotTree& tree, const Recording& recording,
                std::vector<TriedCorrection>& tried) {
   try {
-    tried.push_back(Undone(one, tree, recording));
+    TriedCorrection undone = Undone(one, tree, recording);
+    const bool known = std::ranges::any_of(tried, [&](const TriedCorrection& before) {
+      return before.name == undone.name && before.what == undone.what;
+    });
+    if (!known) tried.push_back(std::move(undone));
   } catch (const InputError&) {
   }
 }
@@ -78,10 +82,10 @@ std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel
   for (const LogSuspicion& one : suspicions.log) {
     std::size_t& used = one.kind == LogContradiction::kFrozen ? frozen : others;
     if (used++ >= most) continue;
-    if (IsOfSomeTrials(one, recording)) {
+    AddUndone(one, project.tree, recording, tried);
+    if (all && IsOfSomeTrials(one, recording)) {
       AddUndone(SignOf(one.coordinate, recording), project.tree, recording, tried);
     }
-    AddUndone(one, project.tree, recording, tried);
   }
   if (all) {
     std::vector<TriedCorrection> orders = FindColumnOrders(nominal, recording);

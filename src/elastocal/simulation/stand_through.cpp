@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/robot/statics.hpp"
 
@@ -36,12 +37,14 @@ void MoveTo(const JointMotion& motion, double time_s, Between& between) {
   between.share = std::clamp((time_s - motion.time_s[at]) / span, 0.0, 1.0);
 }
 
-/// Contact forces, averaged over the latest looks at the robot.
+/// Contact forces, averaged over the latest looks at the robot since the planned support changed.
 class AverageContact {
  public:
   explicit AverageContact(std::size_t looks) : looks_(looks) {}
 
-  void Add(const VirtualRobot& body, std::size_t soles) {
+  void Add(const VirtualRobot& body, std::size_t soles, const std::vector<int>& support) {
+    if (support != support_) latest_.clear();
+    support_ = support;
     const auto [force, moment] = body.FloorWrench();
     Eigen::VectorXd now(6 + static_cast<Eigen::Index>(soles));
     now << force, moment, Eigen::VectorXd::Zero(now.size() - 6);
@@ -52,6 +55,9 @@ class AverageContact {
     latest_.push_back(std::move(now));
     if (latest_.size() > looks_) latest_.pop_front();
   }
+
+  /// Whether these are so many that the touch of a sole is no more than a small part of them.
+  bool Tells() const { return 2 * latest_.size() >= looks_; }
 
   /// Distance of the zero-moment point to the edge of the loaded soles, m.
   double ZmpMargin(const VirtualRobot& body, const std::vector<Sole>& soles) const {
@@ -71,6 +77,7 @@ class AverageContact {
 
  private:
   std::size_t looks_;
+  std::vector<int> support_;
   std::deque<Eigen::VectorXd>
       latest_;  // floor: force, moment; force on each sole along the vertical
 };
@@ -136,8 +143,8 @@ class StandingPlay {
         height_(body_.Height()),
         per_look_(std::max(1L, std::lround(kLook / body_.time_step_s()))),
         interval_s_(static_cast<double>(per_look_) * body_.time_step_s()),
-        contact_(static_cast<std::size_t>(
-            std::ceil(std::sqrt(height_ / kGravity.norm()) / interval_s_))),
+        contact_(
+            Size(std::max(1L, std::lround(std::sqrt(height_ / kGravity.norm()) / interval_s_)))),
         correction_(Eigen::VectorXd::Zero(motion.q.cols())) {}
 
   StandingRun Run() {
@@ -201,7 +208,12 @@ class StandingPlay {
       body_.Command(now.Of(commanded_) + correction_);
       body_.Step();
       if (i % per_look_ != 0) continue;
-      if (body_.FallenFrom(height_)) return run;
+      if (body_.FallenFrom(height_)) {
+        // It lies there as soon as the motion begins.
+        constexpr double kNever = std::numeric_limits<double>::infinity();
+        if (run.least_zmp_margin == kNever) run.least_zmp_margin = -kNever;
+        return run;
+      }
       Look(begin, now, run);
     }
     run.stood = true;
@@ -214,8 +226,10 @@ class StandingPlay {
     run.largest_lean = std::max(run.largest_lean, std::acos(std::clamp(upright, -1.0, 1.0)));
     run.tracking = std::max(
         run.tracking, TrackingError(robot_, body_.Encoders(), now.Of(commanded_) + correction_));
-    contact_.Add(body_, soles_.size());
-    run.least_zmp_margin = std::min(run.least_zmp_margin, contact_.ZmpMargin(body_, soles_));
+    contact_.Add(body_, soles_.size(), motion_.support[Size(now.at)]);
+    if (contact_.Tells()) {
+      run.least_zmp_margin = std::min(run.least_zmp_margin, contact_.ZmpMargin(body_, soles_));
+    }
     const Eigen::VectorXd planned = now.Of(motion_.q);
     if (options_.watch) options_.watch(now.at, planned, body_);
     if (options_.stabiliser == nullptr) return;

@@ -21,9 +21,9 @@ struct StandingRun {
   double tracking = 0.0;  ///< largest difference of encoders and command, rad or m
   /// Least distance of the zero-moment point of the true contact forces to the edge of the loaded
   /// soles (a twentieth of the weight and more), m. Forces are averaged over the time in which the
-  /// robot falls, the square root of its height by gravity: a firm sole that touches the floor is
-  /// on its edge for a hundredth of a second. The margin is around 0 when the robot stands on an
-  /// edge.
+  /// robot falls, the square root of its height by gravity, and while the planned support is the
+  /// same: a firm sole that touches the floor is on its edge for a hundredth of a second. The
+  /// margin is around 0 when the robot stands on an edge.
   double least_zmp_margin = 0.0;
   double largest_shift = 0.0;  ///< of the root link by the stabiliser, m
 };
