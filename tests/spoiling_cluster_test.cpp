@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/elastocal.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/mistakes/find_faults.hpp"
 #include "elastocal/recorded/recorded_model.hpp"

@@ -83,7 +83,7 @@ TEST(LogMistakesStudy, NamesTheJointWhoseFrozenLogSpoilsTheClock) {
 
 // Of two parallel axes, markers are as fast with the one turned the other way as with the other
 // one.
-TEST(LogMistakes, PositionsTellWhichOfTwoParallelAxesTurnsTheOtherWay) {
+TEST(LogMistakesStudy, PositionsTellWhichOfTwoParallelAxesTurnsTheOtherWay) {
   MarkedRobot robot = WaistAndLeg();
   for (const int still : {0, 1, 4, 5}) robot.tree.joints[still].limits = {};
   for (Marker& marker : robot.markers) {
@@ -123,7 +123,7 @@ TEST(LogMistakes, AMotionThereAndBackIsNoMistake) {
 }
 
 // Joints that are moved one after the other stand still for long while others move.
-TEST(LogMistakes, JointsThatMoveOneAfterTheOtherAreNotFrozen) {
+TEST(LogMistakesStudy, JointsThatMoveOneAfterTheOtherAreNotFrozen) {
   const MarkedRobot robot = WaistAndLeg();
   const ScriptedTrial clean = PlayStanding({.postures = 12, .move_s = 1.5, .one_by_one = true});
   const auto find = [&](const ScriptedTrial& played, double peak) {
