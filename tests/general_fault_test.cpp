@@ -24,8 +24,6 @@
 namespace elastocal {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
-
 using GeneralFaults = FaultyArm;
 
 // The first guess is one slip of more than either, somewhere near the second one.
