@@ -17,6 +17,8 @@
 #include "elastocal/cli/quick_demo.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/simulation_report.hpp"
+#include "elastocal/files/output_set.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 
 namespace elastocal::cli {
@@ -108,9 +110,18 @@ class Simulations {
   std::vector<Run> runs_;  ///< last: their threads end before the rest goes
 };
 
+/// Throws InputError at once where `--json` cannot be written: `calibrate` would see it only after
+/// the motions are simulated.
+void RequireJsonPlace(const std::string& json_file) {
+  OutputSet outputs;
+  DeclareJson(json_file, outputs);
+  outputs.Prepare();
+}
+
 /// From the robot's description to a calibrated one: the commands that a user would give. Each
 /// simulation begins when its motion is planned, and runs beside what comes next.
 int RunCompleteChain(const std::string& project, const DemoOptions& options) {
+  RequireJsonPlace(options.common.json_file);
   const auto in = [&](const std::string& name) {
     return (std::filesystem::path(options.output) / name).string();
   };
@@ -123,6 +134,9 @@ int RunCompleteChain(const std::string& project, const DemoOptions& options) {
   int exit_code = RunShown(design, options);
   if (exit_code != kFine) return exit_code;
   Words calibrate = {"calibrate", project, "-o", options.output, "--recording", in("recording")};
+  if (!options.common.json_file.empty()) {
+    calibrate.insert(calibrate.begin() + 2, {"--json", options.common.json_file});
+  }
   Simulations simulations(project, seed);
   exit_code = RunShown({"plan", project, "--postures", in("postures.yaml"), "-o", in("motion.csv")},
                        options);
