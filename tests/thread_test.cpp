@@ -6,11 +6,13 @@
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/posture_file.hpp"
+#include "elastocal/io/posture_table.hpp"
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/pipeline/calibrate_experiment.hpp"
 #include "elastocal/planning/plan_motion.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 #include "elastocal/planning/simulation_settings.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
@@ -62,6 +64,26 @@ chains:
   const MotionPlan in_turn = PlanMotion(project, postures, options);
   ASSERT_GT(together.whole.motion.q.rows(), 100);
   EXPECT_EQ(together.whole.motion.q, in_turn.whole.motion.q);
+}
+
+TEST(Threads, FoldsAreEstimatedTogether) {
+  const ScratchFolder scratch;
+  const Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  const ErrorModel model = MakeProjectModel(project, {});
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(model.parameter_count());
+  const std::filesystem::path table = scratch.path() / "table.csv";
+  WritePostureTable(table, MakeSyntheticRecording(model, none, {.postures = 12}), project.tree);
+  ExperimentOptions options{.folds = 3, .threads = 3};
+  const CalibrationRun together = CalibrateExperiment(project, {table}, options);
+  options.threads = 1;
+  const CalibrationRun in_turn = CalibrateExperiment(project, {table}, options);
+  ASSERT_EQ(together.cross_validation.folds, 3);
+  const int kind = static_cast<int>(together.comparison.largest_kind());
+  const Eigen::MatrixXd& distances = together.cross_validation.distances[kind];
+  ASSERT_EQ(distances.rows(), 12);
+  EXPECT_TRUE((distances.array() == in_turn.cross_validation.distances[kind].array() ||
+               distances.array().isNaN())
+                  .all());
 }
 
 }  // namespace
