@@ -13,6 +13,7 @@ constexpr double kUsualLength = 1e-3;            // m
 constexpr double kUsualZero = 0.5 * kOneDegree;  // rad
 constexpr std::size_t kMostLinkageJoints = 6;    // of one linkage
 constexpr std::size_t kMostLinkages = 100;
+constexpr double kLeastUncertain_mm = 1e-6;  // of what is not exact; as the bounds have it
 
 using Coordinates = std::array<RodQuantity, 3>;
 constexpr Coordinates kAnchor = {RodQuantity::kAnchorX, RodQuantity::kAnchorY,
@@ -64,6 +65,8 @@ std::vector<RodUncertainty> ReadUncertain(const YamlValue& section, const Rod& r
     if (!value) return;
     const Eigen::Vector3d sd = value->IsScalar() ? Eigen::Vector3d::Constant(value->Bounded())
                                                  : Eigen::Vector3d(NumbersOf(*value, 3));
+    value->Expect((sd.array() == 0.0 || sd.array() >= kLeastUncertain_mm).all(),
+                  "0 where it is exact, or at least 1e-6 mm");
     for (int i = 0; i < 3; ++i) {
       if (sd[i] > 0.0) uncertain.push_back({coordinates[Size(i)], kOneMm * sd[i]});
     }

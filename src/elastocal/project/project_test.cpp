@@ -173,6 +173,8 @@ TEST(Project, ReadsLinkages) {
   ExpectError(ElbowLinkage("", "elbow_jont"), {"did you mean 'elbow_joint'"});
   ExpectError(ElbowLinkage(", actuator: true"), {"'axis'"});
   ExpectError(ElbowLinkage(", uncertain: {length_mm: 0}"), {"uncertain.length_mm", "from 1e-06"});
+  ExpectError(ElbowLinkage(", uncertain: {centre_mm: [1, 1e-300, 0]}"),
+              {"uncertain.centre_mm", "0 where it is exact"});
   ExpectError(ElbowLinkage(", uncertain: {lenght_mm: 1}"), {"did you mean 'length_mm'"});
   std::string named = ElbowLinkage("");
   named.replace(named.find("motor: m"), 8, "motor: turret_joint");

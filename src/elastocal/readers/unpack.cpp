@@ -30,7 +30,7 @@ bool UnpackLz4(std::span<const char> packed, std::size_t most, std::vector<char>
     if (LZ4F_isError(hint) || (made == 0 && used == 0 && hint != 0)) return false;
     packed = packed.subspan(used);
   }
-  return packed.empty();
+  return hint == 0 && packed.empty() && unpacked.size() <= most;
 }
 
 bool UnpackZstd(std::span<const char> packed, std::size_t most, std::vector<char>& unpacked) {
@@ -50,7 +50,7 @@ bool UnpackZstd(std::span<const char> packed, std::size_t most, std::vector<char
     unpacked.resize(held + out.pos);
     if (ZSTD_isError(left) || (out.pos == 0 && in.pos == used && left != 0)) return false;
   }
-  return in.pos == in.size;
+  return left == 0 && in.pos == in.size && unpacked.size() <= most;
 }
 
 bool UnpackBz2(std::span<const char> packed, std::size_t most, std::vector<char>& unpacked) {
@@ -72,7 +72,7 @@ bool UnpackBz2(std::span<const char> packed, std::size_t most, std::vector<char>
     unpacked.resize(held + kPiece - stream.avail_out);
     if (result == BZ_OK && stream.avail_in == before && stream.avail_out == kPiece) return false;
   }
-  return result == BZ_STREAM_END && stream.avail_in == 0;
+  return result == BZ_STREAM_END && stream.avail_in == 0 && unpacked.size() <= most;
 }
 
 }  // namespace elastocal

@@ -7,8 +7,9 @@
 
 namespace elastocal {
 
-// Unpack what was packed as a whole, piece by piece: what is kept is what came out, at most a piece
-// more than `most`, and not what a file claims. False for data that are damaged or end early.
+// Unpack what was packed as a whole, piece by piece, so that memory is taken for what comes out and
+// not for what a file claims. False for data that are damaged, end early, or unpack to more than
+// `most` bytes.
 
 bool UnpackLz4(std::span<const char> packed, std::size_t most, std::vector<char>& unpacked);
 bool UnpackZstd(std::span<const char> packed, std::size_t most, std::vector<char>& unpacked);
