@@ -17,7 +17,7 @@ namespace {
 
 constexpr Eigen::Index kMostFrames = 4000;  // give a median to 2 % of the noise
 constexpr int kAllPermutationsUpTo = 5;     // 120 of them
-constexpr double kLeastUsual = 0.05;        // of the frames, for the usual distance to be true
+constexpr double kLeastUsual = 0.05;        // least share of the frames with a usual distance
 
 std::vector<Permutation> ListPermutations(int size) {
   Permutation order(static_cast<std::size_t>(size));

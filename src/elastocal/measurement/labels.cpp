@@ -247,7 +247,8 @@ bool IsRemoved(const Plan& plan, const ClusterShape& shape, int frame, int i) {
   return plan.removed[shape.permutations[plan.order[frame]][i]][frame];
 }
 
-// Labels of a cluster that are off beside its others in most of the frames that show them.
+// Labels of a cluster that, in most of the frames that show them, do not fit although others of the
+// cluster do.
 std::vector<int> OffMostly(const LabelFinder& finder, const Plan& plan) {
   const ClusterShape& shape = finder.shape();
   const auto fits = [&](int frame, int i) {

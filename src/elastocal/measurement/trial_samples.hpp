@@ -30,14 +30,15 @@ struct MeasurementOptions {
   /// With eight frames in a rest of a second, frames are far enough apart for the filtered noise to
   /// average out.
   StableSampleOptions rest = {.samples_per_run = 8};
-  /// ClockOptions::largest_sd_s for trials of rests, where the clock matters little: samples are
-  /// away from the ends of a rest by a sixteenth of it, 60 ms of a second. A trial that is refused
-  /// leaves its joints uncalibrated: up to 5/3 of it is accepted where no mistake in the log would
-  /// explain it.
+  /// Takes the place of ClockOptions::largest_sd_s in trials of rests, where the clock matters
+  /// less: samples are at least a sixteenth of a rest (60 ms of one second) away from its ends.
+  /// Because a refused trial leaves its joints uncalibrated, up to 5/3 of this value is accepted if
+  /// no mistake in the log explains the uncertainty.
   double largest_rest_lag_sd_s = 0.030;
   double sine_rate_hz = 10.0;  ///< rate of the moments taken from a motion without rests
   TorqueCheckOptions torques = {};
-  /// Mistakes of the log (NameOf) that are undone for the clock where speeds agree better then.
+  /// Mistakes of the log (NameOf) that may be undone while the clock is estimated. One is undone if
+  /// the speeds then agree better.
   std::vector<std::string> accepted = {};
 };
 

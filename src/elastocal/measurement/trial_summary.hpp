@@ -28,11 +28,12 @@ struct TrialSummary {
   Trial trial;
   std::string markers_source, joints_source;  ///< files, for messages
   std::string refused;               ///< why nothing of the trial is used; empty: it is used
-  std::map<int, double> steps = {};  ///< in which the log has positions, by coordinate (StepOf)
+  std::map<int, double> steps = {};  ///< resolution of logged positions, by coordinate (StepOf)
   double rate_hz = 0.0;
   int frame_count = 0;
   ClockFit clock;
-  /// Mistakes of the log (NameOf) without which alone the clock was told; positions are as logged.
+  /// Mistakes of the log (NameOf) that had to be undone for the clock to be told. The positions in
+  /// the samples are as logged.
   std::vector<std::string> clock_without;
 
   int postures = 0;     ///< number of rests or, in a sine trial, of moments
