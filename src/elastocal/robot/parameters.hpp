@@ -11,8 +11,9 @@ namespace elastocal {
 /// placement.hpp). Elastic kinds (eq. 5 to 7) are compliances (inverse stiffnesses) of joints about
 /// their axes (`kTorsion`) and across them (`kBending`), compliances of a leg between its foot and
 /// the waist by a force (`kLegForce`) and by a moment (`kLegMoment`), and the bias of a joint's
-/// torque sensor. `kCorrection`: what neither describes (corrections.hpp). `kRod` and `kMotorZero`
-/// are those of linkages (linkage.hpp): lengths, and the zeros of motors.
+/// torque sensor (`kTorqueBias`). `kCorrection` is an error that neither geometry nor elasticity
+/// describes (corrections.hpp). `kRod` (lengths) and `kMotorZero` (zeros of motors) are errors of
+/// linkages (linkage.hpp).
 enum class ParameterKind {
   kTheta,
   kR,
