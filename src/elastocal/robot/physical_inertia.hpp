@@ -16,8 +16,8 @@ namespace elastocal {
 Eigen::Matrix3d PhysicalInertia(const Eigen::Matrix3d& inertia);
 
 /// What is wrong with the masses and inertias of a URDF, one sentence each:
-/// - a link's inertia that no body can have, or only a body wider than the robot (links above 10
-/// g);
+/// - a link's inertia that no body can have, or (of a link above 0.01 kg) only a body wider than
+///   the robot;
 /// - a link with a mass but without inertia;
 /// - parts that joints move whose mass is so large that it may not be in kg: more than 300 kg per
 ///   m^3 of a cube as wide as the robot;
