@@ -22,7 +22,7 @@ class LeastSquaresProblem {
 
   struct ResidualBlock {
     int size = 0;
-    std::vector<int> parameter_blocks;  ///< that it depends on, each once
+    std::vector<int> parameter_blocks;  ///< blocks of x that it depends on, each once
     /// Whether it takes part in the minimum; one that does not is only evaluated.
     bool active = true;
   };
@@ -47,7 +47,7 @@ class LeastSquaresProblem {
 
 struct LeastSquaresOptions {
   int max_iterations = 100;
-  /// Ends when a step is expected to lower the cost relatively by less than this.
+  /// The solver ends when a step is expected to lower the cost by less than this share of it.
   double function_tolerance = 1e-13;
 };
 
