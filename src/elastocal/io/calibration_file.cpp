@@ -77,7 +77,7 @@ void EmitMarkers(const ErrorModel& model, YAML::Emitter& yaml) {
   yaml << YAML::EndSeq;
 }
 
-/// Waist and markers alone, fitted to the same recording.
+/// Writes waist and markers of the uncalibrated robot, fitted to the same recording.
 void EmitUncalibrated(const CalibrationResult& result, YAML::Emitter& yaml) {
   yaml << YAML::Key << "uncalibrated" << YAML::Value << YAML::BeginMap;
   for (int i = 0; i < result.model.parameter_count(); ++i) {
@@ -88,7 +88,7 @@ void EmitUncalibrated(const CalibrationResult& result, YAML::Emitter& yaml) {
   yaml << YAML::EndMap;
 }
 
-/// What the calibrated URDF has, of another model.
+/// Writes the errors in the calibrated URDF, if they are those of another model.
 void EmitInUrdf(const CalibrationResult& result, YAML::Emitter& yaml) {
   yaml << YAML::Key << "urdf" << YAML::Value << YAML::BeginMap;
   yaml << YAML::Key << "model" << YAML::Value << ModelKindName(result.kind)

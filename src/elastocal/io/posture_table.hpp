@@ -11,7 +11,7 @@
 
 namespace elastocal {
 
-/// A recording with what is odd about it but no reason to refuse it.
+/// A recording, with warnings about it that are no reason to refuse it.
 struct PostureTable {
   Recording recording;
   std::vector<std::string> markers_not_recorded;  ///< markers of the project without columns
