@@ -10,8 +10,8 @@ namespace elastocal {
 /// 0 for anything else.
 double MetresIn(std::string_view unit);
 
-/// The unit that a file states, or the one that the user gives. Throws InputError naming `source`
-/// where nobody says, where the name is unknown, or where the two differ.
+/// Metres in the unit that a file states (`stated`) or that the user gives (`given`). Throws
+/// InputError naming `source` if there is neither, if the name is unknown, or if the two differ.
 double UnitOf(std::string_view stated, const std::string& given, const std::string& source);
 
 }  // namespace elastocal

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::int64_t kSecond = 1000000000;
 
-/// The stamp of a header, ns; 0 where nobody set it. `frame` gets the name of its frame.
+/// The stamp of a header, ns; 0 if it was not set. `frame` gets the name of its frame.
 std::int64_t ReadStamp(MessageFields& fields, RosEncoding encoding, std::string* frame = nullptr) {
   if (encoding == RosEncoding::kRos1) fields.U32();  // the sequence number
   const std::int64_t seconds =
@@ -43,7 +43,7 @@ std::string BodyName(std::string topic) {
   return topic.substr(topic.rfind('/') + 1);
 }
 
-/// Where each of `wanted` stands in `names`, which are the same in any order.
+/// Position of each of `wanted` in `names`, which has the same names in any order.
 std::vector<std::size_t> PlacesIn(const std::vector<std::string>& names,
                                   const std::vector<std::string>& wanted) {
   std::vector<std::size_t> places(names.size());
@@ -141,7 +141,8 @@ void RosMessages::AddJointState(Topic& topic, std::span<const char> message,
   }
 }
 
-/// The same joints may come in another order: some drivers list them as a hash table has them.
+/// The group with these joints, in whatever order: some drivers list joints in the order of a hash
+/// table.
 RosMessages::JointGroup& RosMessages::GroupOf(Topic& topic, const std::vector<std::string>& names,
                                               const std::string& place) const {
   std::vector<JointGroup>& groups = topic.groups;

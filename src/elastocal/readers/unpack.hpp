@@ -7,8 +7,9 @@
 
 namespace elastocal {
 
-// Unpack what was packed as a whole, piece by piece: what is kept is what came out, at most a piece
-// more than `most`, and not what a file claims. False for data that are damaged or end early.
+// Unpack data piece by piece. Memory grows with the unpacked data (at most one piece of 256 KiB
+// beyond `most` bytes, where they stop) and not with the size that the file claims. Return false
+// for data that are damaged or end early.
 
 bool UnpackLz4(std::span<const char> packed, std::size_t most, std::vector<char>& unpacked);
 bool UnpackZstd(std::span<const char> packed, std::size_t most, std::vector<char>& unpacked);
