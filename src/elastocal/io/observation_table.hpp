@@ -13,9 +13,8 @@ namespace elastocal {
 /// Observations that were read, with the setup of the project in which all feet are placed.
 struct ObservationTables {
   Observations observations;
-  ObservationSetup setup;  ///< the project's, with all feet placed
-  std::vector<std::string>
-      warnings;  ///< joints beyond limits, repeated rows, ...; one sentence each
+  ObservationSetup setup;             ///< the project's, with all feet placed
+  std::vector<std::string> warnings;  ///< joints beyond limits, repeated rows, ...
 };
 
 /// The files to read for a list of files and folders. A folder that `simulate` wrote stands for its
