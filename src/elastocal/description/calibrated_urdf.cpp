@@ -277,8 +277,7 @@ std::map<std::string, std::string> XacroNames(const CalibratedUrdf& calibrated) 
   };
   const auto is_free = [&](const std::string& property) { return !taken.contains(property); };
   std::map<std::string, std::string> names;
-  for (const bool as_it_is :
-       {true, false}) {  // first the joints whose names are fine: they keep them
+  for (const bool as_it_is : {true, false}) {  // first the joints that keep their names
     for (const std::string& joint : joints) {
       const std::string property = as_property(joint);
       if ((property == joint) != as_it_is) continue;
