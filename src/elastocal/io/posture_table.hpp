@@ -35,7 +35,7 @@ PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
 void WritePostureTable(const std::filesystem::path& file, const Recording& recording,
                        const Project& project);
 
-/// The same, under the default column names.
+/// Writes a recording as a posture table, under the default column names.
 void WritePostureTable(const std::filesystem::path& file, const Recording& recording,
                        const RobotTree& tree);
 

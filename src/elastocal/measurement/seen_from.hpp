@@ -13,8 +13,8 @@ namespace elastocal {
 /// root link is free, so that no link stands still in the laboratory.
 struct SeenFrom {
   int link = 0;
-  /// In the frame of `link`, up to a constant pose. NaN for the markers on its own body, and in
-  /// frames in which some of these are not seen.
+  /// Trajectories in the frame of `link`, up to a constant pose. NaN for the markers on its own
+  /// body, and in frames in which some of these are not seen.
   MarkerTrajectories trajectories;
 };
 

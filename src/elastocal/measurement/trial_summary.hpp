@@ -53,8 +53,8 @@ struct TrialSummary {
       markers_missing;  ///< markers that take part, but are not in the file or never seen
   std::vector<std::string> markers_unknown;  ///< markers in the file that the project does not have
   std::vector<BadTorqueSensor> bad_torque_sensors;
-  std::optional<MeasuredScale> scale;  ///< by the project's reference lengths
-  bool reference_missing = false;      ///< the project has some, but none is seen in this trial
+  std::optional<MeasuredScale> scale;  ///< scale error by the project's reference lengths
+  bool reference_missing = false;      ///< the project has reference lengths, but none is seen
   std::vector<std::string> torques_missing;  ///< joints that have a sensor, but no logged torques
 };
 

@@ -35,7 +35,7 @@ struct BalanceOptions {
 struct BalancedStretch {
   bool in_reach = false;  ///< whether all feet could be placed; nothing else is valid otherwise
   Eigen::MatrixXd q;      ///< samples x coordinates
-  std::vector<Transform> T_world_root;  ///< by sample
+  std::vector<Transform> T_world_root;  ///< one for each sample
   Eigen::MatrixX2d zmp;                 ///< of the balanced motion, m
 };
 

@@ -54,8 +54,8 @@ class LegChain {
   /// straight.
   bool Place(const Transform& T_root_sole, Eigen::VectorXd& q) const;
 
-  /// The same, but the sole of a leg of five joints, which cannot have every pose, may turn about
-  /// its normal.
+  /// Like `Place`, but the sole may turn about its normal, because a leg of five joints cannot
+  /// reach every pose.
   bool PlaceFlat(const Transform& T_root_sole, Eigen::VectorXd& q) const;
 
   /// The same as `Place` for a pose of the sole in the world. A root link that has to turn (see
@@ -64,7 +64,7 @@ class LegChain {
                       Eigen::VectorXd& q) const;
 
  private:
-  /// What else may turn, beside the leg's joints, while the sole is placed.
+  /// What may turn, besides the leg's joints, while the sole is placed.
   enum class Turns { kNothing, kSole, kRoot };
   /// `up`: the axis of a root link that turns, in its frame. Returns nothing if the sole is out of
   /// reach, and otherwise the angle by which the root link turns, rad.
@@ -73,7 +73,7 @@ class LegChain {
   /// Pose of the sole; sets `screws` to its derivatives, 6 x coordinates: a rotation and the
   /// velocity of the point at the root's origin.
   Transform Evaluate(const Eigen::VectorXd& q, Eigen::MatrixXd& screws) const;
-  /// How many numbers `Place` sets: those of the sole's pose, or of a ball's place.
+  /// Number of coordinates that `Place` sets: six of a pose, or three of a ball's place.
   int placed() const { return on_ball_ ? 3 : 6; }
 
   const RobotTree& tree_;

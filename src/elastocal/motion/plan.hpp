@@ -64,17 +64,17 @@ struct PlanOptions {
 
 /// A posture at rest in a planned motion.
 struct Visit {
-  int posture = 0;         ///< of the set
+  int posture = 0;         ///< index of the posture in the set
   int begin = 0, end = 0;  ///< samples of the hold, without `end`
 };
 
 /// A posture (or sinusoidal motion) that is not part of the motion, and why.
 struct LeftOut {
-  int posture = 0;  ///< of the set; -1: a sine
+  int posture = 0;  ///< index of the posture in the set; -1: a sine
   int sine = -1;    ///< coordinate of the sine
   Constraint constraint = Constraint::kReach;
   double value = 0.0;   ///< value that breaks the constraint, see MotionMargins; NaN: out of reach
-  int index = -1;       ///< of the joint, foot or pair of parts
+  int index = -1;       ///< index of the joint, foot or pair of parts
   bool at_rest = true;  ///< whether the posture itself breaks it; otherwise every way there does
 };
 

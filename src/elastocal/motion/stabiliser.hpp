@@ -49,7 +49,8 @@ struct StabiliserOptions {
 ///   centres of pressure at like points (a foot on its edge lets the robot rock, and its centre of
 ///   pressure no longer tells where the weight is),
 /// - shifts the root link until the zero-moment point is where the planned centre of mass is.
-/// With more than two feet it only does the last, with the feet, and balls cannot be turned.
+/// Feet are turned only if there are two of them and they are not balls; the root link is turned
+/// and shifted in any case.
 /// Turn and shift are learned for each foot in proportion to its planned share of the weight,
 /// because every leg has errors of its own. What was learned on a foot is used again when the
 /// weight comes back to it. The stabiliser knows the robot by its description, without errors and

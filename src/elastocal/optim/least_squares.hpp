@@ -23,7 +23,7 @@ class LeastSquaresProblem {
   struct ResidualBlock {
     int size = 0;
     std::vector<int> parameter_blocks;  ///< blocks of x that it depends on, each once
-    /// Whether it takes part in the minimum; one that does not is only evaluated.
+    /// Whether it is part of the sum that is minimised. A block that is not is only evaluated.
     bool active = true;
   };
 

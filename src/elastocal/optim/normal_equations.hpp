@@ -63,12 +63,13 @@ class NormalEquations {
   Eigen::MatrixXd Scores(const std::vector<Eigen::VectorXd>& residuals,
                          const std::vector<int>& cluster, int clusters) const;
 
-  /// What is left of A, given in the rows of a residual block, beside the nuisance: with Q that
-  /// projects on what the nuisance does not explain, A' Q r, A' Q A and A' Q J.
+  /// Products of a matrix A, given in the rows of a residual block, with the nuisance taken out. Q
+  /// projects on what the nuisance does not explain, r is the residual, and J the Jacobian by the
+  /// unknowns.
   struct Score {
-    Eigen::VectorXd residual;     ///< columns of A
-    Eigen::MatrixXd information;  ///< columns of A, squared
-    Eigen::MatrixXd cross;        ///< columns of A x unknowns
+    Eigen::VectorXd residual;     ///< A' Q r, one entry for each column of A
+    Eigen::MatrixXd information;  ///< A' Q A, columns x columns of A
+    Eigen::MatrixXd cross;        ///< A' Q J, columns of A x unknowns
   };
   Score Project(int block, const Eigen::MatrixXd& A) const;
 

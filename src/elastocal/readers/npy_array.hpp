@@ -16,8 +16,8 @@ struct NpyArray {
   std::vector<double> numbers;
   std::vector<std::string> texts;
   bool is_text = false;
-  std::string unit;  ///< of times (datetime64, timedelta64): "s", "ns"; empty: NumPy states none
-  std::vector<std::string> field_names;  ///< of an array of records
+  std::string unit;  ///< unit of times (datetime64, timedelta64): "s", "ns"; empty: none is stated
+  std::vector<std::string> field_names;  ///< for an array of records: names of the fields
   std::vector<NpyArray> fields;          ///< its fields; shape: the array's, then the field's
 
   std::size_t count() const;

@@ -47,8 +47,8 @@ struct Elasticity {
   /// Whether the robot stands on `legs`. If false, the legs only end in links that are observed,
   /// and the root link is held still.
   bool stands_on_legs = true;
-  bool base = true;          ///< these legs have a lumped compliance from foot to waist, eq. 6 ...
-  bool torque_bias = false;  ///< ... and their torque sensors unknown biases
+  bool base = true;          ///< legs have a lumped compliance from foot to waist, eq. 6
+  bool torque_bias = false;  ///< with `base`, the legs' torque sensors have unknown biases
   /// Corrections (corrections.hpp). One of a joint is a parameter if its joint moves a marker. One
   /// of loads is a parameter if a joint that carries the body is elastic and the root link stands
   /// still and does not bend; for a robot on its legs, the loads of the legs are not known.
@@ -63,7 +63,7 @@ struct ErrorModel {
   std::vector<JointPlacement> placements;  ///< one for each joint of the tree
   std::vector<Marker> markers;
   Transform T_ref_waist = Transform::Identity();  ///< nominal pose of the root link, eq. 2
-  Elasticity elasticity;                          ///< as requested
+  Elasticity elasticity;                          ///< as given to MakeErrorModel
   std::vector<SupportLeg> legs;                   ///< those of `elasticity`, with their joints
   std::vector<int> active_joints;                 ///< joints that have parameters, ascending
   /// The parameters, in this order:

@@ -27,7 +27,7 @@ struct LoadOptions {
 /// Loads that the robot's sensors measured in one posture.
 struct MeasuredLoads {
   Eigen::VectorXd torques;  ///< by joint of the tree, N.m or N; NaN without sensor; empty: none
-  int wrench_link = -1;     ///< of a force-torque sensor in the support leg; -1: none
+  int wrench_link = -1;     ///< link of a force-torque sensor in the support leg; -1: none
   Vector6d wrench = Vector6d::Zero();  ///< see LoadFromWrench
 };
 

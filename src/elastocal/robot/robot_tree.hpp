@@ -66,7 +66,7 @@ struct RobotTree {
   std::vector<Joint> joints;
   std::vector<int> coordinate_joint;  ///< for each entry of q, its joint
   std::vector<Linkage> linkages;      ///< joints that motors move by rods: see AddLinkage
-  /// What the description leaves open or says oddly, and how it was taken.
+  /// Sentences about what the description leaves open or says oddly, and how it was read.
   std::vector<std::string> warnings;
 
   int body_count() const { return static_cast<int>(joints.size()) + 1; }

@@ -66,10 +66,10 @@ struct TruthOptions {
   double torque_bias_sd = 0.5;   ///< N.m (at most 2 % of the largest effort)
 
   // Causes beyond geometry and springs (docs/diagnose.md).
-  std::string heavy_link = {};       ///< weighs more than it should, whatever mass_sd; empty: none
-  double heavy_share = 0.0;          ///< by this share
-  std::string creeping_marker = {};  ///< moves along x of its link; empty: none
-  double creep = 0.0;                ///< m/h
+  std::string heavy_link = {};       ///< link with an additional error of mass; empty: none
+  double heavy_share = 0.0;          ///< additional mass of `heavy_link`, share of its mass
+  std::string creeping_marker = {};  ///< marker that moves along x of its link; empty: none
+  double creep = 0.0;                ///< speed of `creeping_marker`, m/h
 };
 
 /// The true robot, with what its description does not say.
