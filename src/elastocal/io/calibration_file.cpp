@@ -348,7 +348,7 @@ StoredCalibration AsInUrdf(StoredCalibration stored) {
 void CheckParameters(const StoredCalibration& stored, const ErrorModel& model,
                      const std::vector<std::string>& chains) {
   std::set<std::string> owners(chains.begin(), chains.end());
-  owners.insert({"waist", "gravity"});  // of corrections
+  owners.insert({"waist", "gravity"});  // they have corrections
   for (const Link& link : model.tree.links) owners.insert(link.name);
   for (const Joint& joint : model.tree.joints) owners.insert(joint.name);
   for (const Linkage& linkage : model.tree.linkages) {

@@ -71,8 +71,9 @@ struct StoredCalibration {
   /// Posture table: nominal pose of the waist in the frame of the recording.
   std::optional<Transform> T_ref_waist;
   Eigen::Vector3d gravity = kGravity;  ///< in that frame, m/s^2
-  /// Waist (deviations from there) and markers, by parameter name, SI: of the calibrated model, and
-  /// of the uncalibrated one fitted to the same recording (empty if the file does not have it).
+  /// Waist (deviations from `T_ref_waist`) and markers, by parameter name, SI: of the calibrated
+  /// model, and of the uncalibrated one fitted to the same recording (empty if the file does not
+  /// have it).
   std::map<std::string, double> externals, uncalibrated_externals;
   std::map<std::string, int> lines;  ///< line of each parameter in the file, by parameter name
 };

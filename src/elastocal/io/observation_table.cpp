@@ -36,8 +36,8 @@ struct ObservationFile {
   Recording postures;                 // no markers
   std::vector<std::string> sessions;  // by row
   std::vector<std::string> warnings;
-  std::vector<std::string> plates;  // by row, where there is a column for them
-  std::vector<std::string> frames;  // likewise for images
+  std::vector<std::string> plates;  // by row; empty without a column of plates
+  std::vector<std::string> frames;  // names of images by row; empty without a column
   std::vector<MeasuredRow> measured;
 };
 

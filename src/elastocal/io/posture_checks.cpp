@@ -17,7 +17,7 @@ namespace {
 constexpr double kDegreesPerRadian = 180.0 / M_PI;
 /// Beyond two turns a joint is more likely in degrees than wound up.
 constexpr double kLargestAngle = 4.0 * M_PI;
-constexpr double kLargestSlide = 20.0;  // of the limit of a sliding joint
+constexpr double kLargestSlide = 20.0;  // largest multiple of the limit of a sliding joint
 constexpr double kLeastSlide = 1.0;     // m: limits of grippers are often too narrow
 /// Marker positions of a robot that stands fixed cannot range over more than its size; three times
 /// leaves room for long tools.

@@ -69,7 +69,7 @@ void RefuseJointLog(const Table& table, const Project& project) {
   bool timed = false, logged = false;
   for (const std::string& column : table.header()) {
     const std::string plain = PlainColumnName(column);
-    if (plain.empty()) continue;  // of a bag: what is no quantity of a joint
+    if (plain.empty()) continue;  // column of a topic's header, no quantity of a joint
     if (plain == project.recording.time || TimeUnitOfName(plain)) {
       timed = true;
     } else if (const auto ending = std::ranges::find_if(

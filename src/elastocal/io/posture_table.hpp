@@ -23,7 +23,7 @@ struct PostureTable {
 /// with cells that are empty or NaN was not seen. Throws InputError naming file, line and column:
 /// missing or unknown column (with the nearest known one), text or NaN where a number belongs (NaN
 /// in some cells of a marker), no rows, a line above 1 MiB, two markers with identical columns,
-/// other units than metres (judged by the robot's size; of one marker: FindOtherUnit), postures
+/// other units than metres (judged by the robot's size; for one marker by FindOtherUnit), postures
 /// that are all the same; a recording over time (RefuseRecording).
 PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& project);
 

@@ -57,7 +57,7 @@ double Separation(const ClusterShape& shape) {
 }
 
 bool Agree(double distance, double usual, double tolerance) {
-  return !(std::abs(distance - usual) > tolerance);  // where one is not known, they do not differ
+  return !(std::abs(distance - usual) > tolerance);  // true also if one of them is unknown (NaN)
 }
 
 // Whether the distances under an order of the labels are the usual ones.
@@ -72,7 +72,7 @@ bool HasUsual(const ClusterShape& shape, const Permutation& order, const Eigen::
   return true;
 }
 
-// The values near the usual one, where they are a twentieth of all; else nothing.
+// The values near the usual one if they are at least `kLeastUsual` of all; else nothing.
 std::vector<double> NearUsual(const std::vector<double>& values, double usual, double tolerance) {
   std::vector<double> near;
   std::copy_if(values.begin(), values.end(), std::back_inserter(near),

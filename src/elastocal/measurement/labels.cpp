@@ -14,8 +14,8 @@ namespace {
 constexpr int kOpen = -1;  // the order of labels is not known from the frame itself
 
 // Where distances are too much alike, labels that are exchanged for a moment show by their jumps.
-constexpr double kSamePlace = 0.3;        // of the cluster's least distance: no other marker
-constexpr double kNoTimeToTurn_s = 0.1;   // from one frame to the next
+constexpr double kSamePlace = 0.3;        // share of the cluster's least distance: same place
+constexpr double kNoTimeToTurn_s = 0.1;   // longest time between the frames of a jump
 constexpr double kLongestExchange_s = 2;  // between two jumps: beyond, one in between was not seen
 
 // What to do with a cluster, frame by frame.

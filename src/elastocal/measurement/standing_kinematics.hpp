@@ -16,7 +16,7 @@ namespace elastocal {
 /// balls roll and only their centres stand still.
 class StandingKinematics {
  public:
-  /// `markers`: of the robot; `standing`: links.
+  /// `markers` are indices into the robot's markers; `standing` are the links that stand still.
   StandingKinematics(const MarkedRobot& robot, const std::vector<int>& markers,
                      const std::vector<int>& standing);
 

@@ -16,7 +16,7 @@ constexpr double kWidest_s = 600.0;  // bounds the cost of the search
 constexpr double kMostSamples = 1e8;
 constexpr double kRestWindow_s = 0.3;
 constexpr double kJump = 0.02;  // size of a jump, as a share of the mean speed's standard deviation
-constexpr double kJumpReach_s = 0.1;  // what is left out to either side of a jump
+constexpr double kJumpReach_s = 0.1;  // time that is left out on either side of a jump
 constexpr int kMostPasses = 3;
 constexpr double kSettled_s =
     5e-3;  // change of the lag that counts as none; well within a jump's reach

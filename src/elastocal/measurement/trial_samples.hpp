@@ -60,13 +60,13 @@ struct TrialSamples {
 ///    (CorrectLabels);
 /// 2. close short gaps; filter markers and log with the same low-pass (SmoothTrajectories,
 ///    SmoothLog);
-/// 3. estimate lag and drift of the robot's clock by the markers' speeds (EstimateTrialClock); of a
-///    motion, and where the speeds do not tell them well enough, by their positions (RefineClock);
-///    the first support foot or, without one, the root link is at rest in the laboratory; a free
-///    root moves, and the motion is seen from a body with markers (SeeFromMarkedBody);
+/// 3. estimate lag and drift of the robot's clock by the markers' speeds (EstimateTrialClock), and
+///    in trials of motion, or if the speeds do not tell them well enough, by the markers' positions
+///    (RefineClock); the first support foot or, without one, the root link is at rest in the
+///    laboratory; if the root is free, the motion is expressed in a body with markers
+///    (SeeFromMarkedBody);
 /// 4. find stable samples (FindStableSamples) or, in a trial of motion, take moments at a constant
-/// rate
-///    from the first motion to the last, both only where the robot's log covers the frame;
+///    rate from the first motion to the last, both only where the robot's log covers the frame;
 /// 5. average the samples of each rest to one posture: marker positions, and joint positions and
 ///    torques at the corresponding robot times. A marker that is not seen in all samples of a rest
 ///    is left out there, so that all markers of a posture have the same number of samples. Samples

@@ -67,7 +67,7 @@ class WayAround {
 
   /// Pushes the way away from what is too near, and keeps the best one.
   void Bend(int iterations, JointPath& path) const {
-    constexpr double kFirstStep = 0.15;  // of the way point that moves most, rad
+    constexpr double kFirstStep = 0.15;  // first step: largest change of a coordinate, rad
     constexpr double kShrink = 0.96;
     Eigen::MatrixXd control = path.control;
     double length = kFirstStep;

@@ -113,8 +113,8 @@ bool BalanceAtRest(const StandingRobot& robot, const std::vector<int>& feet,
 /// false, with the pose changed, if a foot is out of reach.
 bool PlaceFeet(const StandingRobot& robot, const std::vector<int>& feet, PlacedPosture& pose);
 
-/// Places one leg so that its sole has the given pose in the world; of a leg with too few joints of
-/// its own, the sole may turn about its normal.
+/// Places one leg so that its sole has the given pose in the world. If the leg has too few joints
+/// of its own, the sole may turn about its normal.
 bool PlaceSole(const StandingRobot& robot, int foot, const Transform& T_world_sole,
                PlacedPosture& pose);
 

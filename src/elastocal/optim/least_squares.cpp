@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kFirstDamping = 1e-4;  // of the diagonal, after the first step that failed
+constexpr double kFirstDamping = 1e-4;  // share of the diagonal, after the first failed step
 constexpr double kLeastDamping = 1e-9;  // smaller values count as no damping
 constexpr double kMostDamping = 1e12;   // beyond this, no step lowers the cost
 constexpr double kFasterDamping = 10.0;

@@ -33,6 +33,7 @@ struct AssessOptions {
   CertificateOptions certificate = {};
 };
 
+/// Assesses a set of postures, which need not be feasible.
 Assessment AssessPostures(PostureProblem& problem, const PostureSet& set,
                           const AssessOptions& options = {});
 

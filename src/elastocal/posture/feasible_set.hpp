@@ -48,6 +48,7 @@ struct Violation {
   /// What a posture does, as the end of a sentence: "breaks the limit of arm_1_joint by 0.12".
   std::string Describe() const;
 };
+/// The worst violation by posture x.
 Violation WorstViolation(FeasibleSet& set, const Eigen::VectorXd& x);
 
 inline constexpr double kFeasible = 1e-6;  ///< largest violation of a feasible posture

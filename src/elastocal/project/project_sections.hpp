@@ -49,7 +49,7 @@ constexpr double kOneMm = 1e-3;              // m
 
 constexpr std::size_t kMostInstruments = 1000;
 
-/// The items of a list of the section `instruments`; none where the key is absent.
+/// The items of a list in the section `instruments`; none if the key is absent.
 std::vector<YamlValue> InstrumentList(const YamlValue& section, const char* key);
 
 /// `size` numbers of a list, each within its bounds.

@@ -58,7 +58,7 @@ void Interpolate(const BodyTrack& track, std::int64_t start, double interval, Ei
     while (next < track.stamps_ns.size() && since(next) < -kSameMoment * interval) ++next;
     if (next == track.stamps_ns.size()) break;
     const double after = since(next);
-    double share = 1.0;  // of the pose `next`
+    double share = 1.0;  // share of the later pose
     if (after > kSameMoment * interval) {
       if (next == 0) continue;
       const double step = after - since(next - 1);

@@ -6,8 +6,8 @@
 
 namespace elastocal {
 
-/// Metres in a unit that files name: mm, cm, m, in and the long names, whatever the letters' case;
-/// 0 for anything else.
+/// Metres in a unit that files name: mm, cm, m, in and the long names, in small or capital letters;
+/// 0 for any other text.
 double MetresIn(std::string_view unit);
 
 /// Metres in the unit that a file states (`stated`) or that the user gives (`given`). Throws

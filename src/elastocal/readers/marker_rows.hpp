@@ -25,7 +25,7 @@ class MarkerRows {
  private:
   void Append(double x, double y, double z);
 
-  std::vector<std::vector<double>> blocks_;  ///< of equal size, but for the last
+  std::vector<std::vector<double>> blocks_;  ///< of equal size, except the last
 };
 
 /// Makes all names different: "#2" is added to the second one of a name, "#3" to the third, and so

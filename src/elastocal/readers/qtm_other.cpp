@@ -91,7 +91,7 @@ class QtmBodyReader {
     for (std::size_t k = 0; k < 9; ++k) {
       rotation(static_cast<Eigen::Index>(k)) = lines_.NumberOrGap(begin + 7 + k);
     }
-    constexpr double kRounding = 0.01;  // of matrices with few decimals
+    constexpr double kRounding = 0.01;  // tolerance for matrices with few decimals
     const bool seen = (rotation.transpose() * rotation).isIdentity(kRounding);
     const bool empty = rotation.isZero(0.0) || rotation.array().isNaN().all();
     if (!seen && !empty) lines_.FailCell(begin + 7, "a rotation matrix in Rot[0] to Rot[8]");

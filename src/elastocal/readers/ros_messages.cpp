@@ -124,7 +124,7 @@ void RosMessages::AddJointState(Topic& topic, std::span<const char> message,
   const std::vector<double> positions = fields.Numbers();
   fields.Numbers();  // velocities
   std::vector<double> efforts = fields.Numbers();
-  if (positions.empty()) return;  // of a driver that tells velocities only
+  if (positions.empty()) return;  // the driver sends only velocities
   if (positions.size() != names.size() || (!efforts.empty() && efforts.size() != names.size())) {
     throw InputError(place + std::to_string(names.size()) + " names, " +
                      std::to_string(positions.size()) + " positions and " +
@@ -178,7 +178,7 @@ void RosMessages::AddPose(Topic& topic, std::span<const char> message, std::int6
 
 void RosMessages::AddTransforms(const Topic& topic, std::span<const char> message,
                                 std::int64_t received_ns, const std::string& place) {
-  constexpr std::size_t kLeastBytes = 70;  // of one: stamp, two names, seven numbers
+  constexpr std::size_t kLeastBytes = 70;  // of one transform: stamp, two names, seven numbers
   MessageFields fields(message, topic.encoding == RosEncoding::kCdr, place);
   const bool is_static = topic.name.ends_with("tf_static");
   for (std::uint32_t left = fields.Count(kLeastBytes); left > 0; --left) {

@@ -61,6 +61,7 @@ struct Correction {
   int marker = -1;               ///< its index in the error model; -1: it has no such marker
 };
 
+/// What a correction acts on, by its joint, marker and function.
 CorrectionTarget TargetOf(const Correction& correction);
 
 /// What the corrections in a posture depend on, besides joint positions and loads.

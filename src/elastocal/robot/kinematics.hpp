@@ -92,8 +92,9 @@ Transform WaistPose(const Geometry& geometry);
 Eigen::Matrix3Xd MarkerPositions(const ErrorModel& model, const Geometry& geometry,
                                  const Eigen::VectorXd& q, const JointLoads& loads = {});
 
-/// Position of a marker in the frame of a link of its own body, m, and the axes of its coordinates
-/// there (columns). Both are the same in all postures: corrections of the marker are left out.
+/// Position of a marker in the frame of a link of its own body, m, and the axes of the marker's
+/// coordinates in that frame (columns). Both are the same in all postures, because corrections of
+/// the marker are left out.
 struct MarkerInLink {
   Eigen::Vector3d position;
   Eigen::Matrix3d axes;

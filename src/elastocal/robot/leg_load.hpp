@@ -25,6 +25,7 @@ struct LegPosture {
                         ///< is fixed
 };
 
+/// Places leg `leg` of the model in the posture q, with its joints deflected by `loads`.
 LegPosture PlaceLeg(const ErrorModel& model, const Geometry& geometry, const Eigen::VectorXd& q,
                     int leg, const JointLoads& loads = {});
 

@@ -29,6 +29,7 @@ LoggedPosition LoggedPositionOf(const RobotTree& tree, int linkage, int entry);
 struct MotorIndex {
   int linkage = -1, rod = -1;
 };
+/// The motor with this name.
 MotorIndex FindMotor(const RobotTree& tree, const std::string& name);
 
 }  // namespace elastocal

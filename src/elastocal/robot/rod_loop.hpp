@@ -20,6 +20,7 @@ struct RodLinks {
   std::vector<Eigen::Vector3d> axes, points;  ///< their axes, and a point on each
 };
 
+/// Places the links of a rod with the linkage's joints at `positions`, rad.
 RodLinks PlaceLinks(const RobotTree& tree, const Linkage& linkage, const Rod& rod,
                     const Eigen::VectorXd& positions);
 
@@ -29,6 +30,8 @@ struct Crank {
   double radius;
 };
 
+/// The crank of a rod that is no actuator; the pin is at `middle` + radius `e1` with the motor at
+/// 0.
 Crank CrankOf(const Rod& rod);
 
 /// The rod with the errors of its uncertain quantities; `errors` has one number for each.
@@ -42,6 +45,7 @@ struct RodLoop {
   Eigen::RowVectorXd by_joints, by_errors;
 };
 
+/// The loop of a rod with its motor at `motor` and the linkage's joints at `positions`.
 RodLoop EvaluateLoop(const RobotTree& tree, const Linkage& linkage, const Rod& rod, double motor,
                      const Eigen::VectorXd& positions);
 
@@ -49,6 +53,7 @@ RodLoop EvaluateLoop(const RobotTree& tree, const Linkage& linkage, const Rod& r
 std::vector<RodLoop> EvaluateLoops(const RobotTree& tree, const Linkage& linkage,
                                    const Eigen::VectorXd& motors, const Eigen::VectorXd& positions);
 
+/// Derivatives of the gaps by the joints, loops x joints; and the gaps, one for each loop, m.
 Eigen::MatrixXd ByJoints(const std::vector<RodLoop>& loops);
 Eigen::VectorXd GapsOf(const std::vector<RodLoop>& loops);
 

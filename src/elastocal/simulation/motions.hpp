@@ -19,7 +19,7 @@ struct MotionSegment {
   Eigen::VectorXd from,
       to;               ///< by coordinate; for a sine, both are the posture around which it moves
   int coordinate = -1;  ///< coordinate of a sine; -1: a quintic polynomial between postures
-  double centre = 0.0, amplitude = 0.0, frequency_hz = 0.0;  ///< of a sine, rad or m
+  double centre = 0.0, amplitude = 0.0, frequency_hz = 0.0;  ///< of a sine: rad or m, Hz
   /// Given samples: their times from the segment's beginning, and their positions, samples x
   /// coordinates, joined by Catmull-Rom's cubics. Empty for other segments.
   Eigen::VectorXd sample_s = {};

@@ -244,12 +244,12 @@ class StandingPlay {
   const StandThroughOptions& options_;
   const Eigen::MatrixXd& commanded_;
   VirtualRobot body_;
-  double height_;  // of what falls, m
+  double height_;  // VirtualRobot::Height() at the beginning, m
   long per_look_;  // steps of the simulation between two looks
   double interval_s_;
   AverageContact contact_;
   Eigen::Matrix3d R_root_unit_ = Eigen::Matrix3d::Identity();
-  Eigen::VectorXd correction_;  // by the stabiliser, to what is commanded
+  Eigen::VectorXd correction_;  // what the stabiliser adds to the commands
 };
 
 }  // namespace
