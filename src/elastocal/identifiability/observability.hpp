@@ -32,7 +32,7 @@ struct Excitation {
   ObservabilityIndices indices;  ///< of the identifiable columns, not scaled (m/rad, m/m)
   std::vector<int> parameters;   ///< parameters of the identifiable columns
   /// For each of `parameters` the standard deviation that it would have from this recording
-  /// alone if one marker coordinate had `marker_sd`: rad or m; infinite where it is not excited.
+  /// alone if one marker coordinate had `marker_sd`: rad or m; infinite if it is not excited.
   Eigen::VectorXd parameter_sd;
 };
 

@@ -65,7 +65,7 @@ std::vector<int> AddInstrumentRoles(const Project& project, int& quantities, Col
   return first;
 }
 
-/// The columns of an instrument in a table; empty where it has none.
+/// The columns of an instrument in a table; empty if it has none.
 std::vector<int> InstrumentColumns(const Table& table, const Project& project,
                                    std::size_t instrument, std::span<const int> found) {
   const std::vector<std::string>& names = project.contact->columns[instrument];

@@ -24,20 +24,21 @@ namespace elastocal {
 /// with them.
 ///
 /// The state is kReliable if the new standard deviation is at most ClockOptions::largest_sd_s, and
-/// kImprecise otherwise. Returns `by_speed` if the new standard deviation is not smaller.
+/// kImprecise otherwise. Returns `by_speed` if FindLagChange finds nothing, or if the new standard
+/// deviation is not smaller.
 ///
 /// If two lags explain the speeds about as well (ClockState::kAmbiguous), both are refined. Returns
-/// the one whose residuals of positions are less than half of the other's, or `by_speed` if there
-/// is no such lag.
+/// the one whose residuals of positions are less than half of the other's, or the only one that can
+/// be refined, or `by_speed` if there is neither.
 ClockFit RefineClock(const MarkedRobot& robot, const std::vector<int>& markers,
                      const std::vector<int>& standing, const SmoothedLog& log,
                      const std::vector<int>& coordinates, const MarkerTrajectories& trajectories,
                      const ClockFit& by_speed, const ClockOptions& options);
 
-/// Root mean square distance, in one coordinate, of the measured markers from the positions that
-/// the nominal robot predicts from the log at this clock, m. One rigid transform places the
-/// cameras' frame for the whole trial. Arguments as for RefineClock. Infinite if cameras and log
-/// share no moment.
+/// Root mean square difference between the measured coordinates of the markers and those that the
+/// nominal robot predicts from the log at this clock, m. One rigid transform places the cameras'
+/// frame for the whole trial. Arguments as for RefineClock. Infinite if cameras and log share no
+/// moment.
 double LeftByPositions(const MarkedRobot& robot, const std::vector<int>& markers,
                        const std::vector<int>& standing, const SmoothedLog& log,
                        const std::vector<int>& coordinates, const MarkerTrajectories& trajectories,

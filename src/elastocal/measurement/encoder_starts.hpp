@@ -13,7 +13,7 @@ namespace elastocal {
 /// anew, somewhere within a step. So readings of one start differ by whole steps, and those of two
 /// starts do not. Joints that hardly move show it best: a gripper, a locked head.
 struct EncoderStarts {
-  /// Start of each row, numbered in order of appearance; empty where no column tells starts.
+  /// Start of each row, numbered in order of appearance; empty if no column tells starts.
   std::vector<int> start;
   std::vector<int> columns;   ///< columns that tell the starts
   std::vector<double> steps;  ///< steps of the encoders of `columns`, in the column's unit

@@ -124,8 +124,8 @@ class LabelFinder {
     }
   }
 
-  // Whether each marker of a frame is where one was in an earlier frame, and not each where it was
-  // itself.
+  // Whether each marker of a frame is in the place of a marker of an earlier frame, and some are
+  // not in their own places.
   bool Jump(int before, int frame) const {
     const double near = kSamePlace * shape_.distances.minCoeff();
     const auto is_where = [&](int now, int earlier) {

@@ -23,7 +23,7 @@ struct LogMistake {
 };
 
 /// Finds what is wrong with the columns of a log whose clock cannot be told. `clock` is the clock
-/// by the log as it is; if its correlation is above 0.999, nothing is wrong with the columns.
+/// by the log as it is; if its correlation is above 0.999, nothing is tried.
 ///
 /// These mistakes are tried: the reversed sign of one joint, two exchanged joints, and three or
 /// more neighbouring columns of one limb that are all shifted by one. Once undone, a mistake must

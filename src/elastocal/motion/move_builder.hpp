@@ -78,8 +78,8 @@ class MoveBuilder {
   Eigen::Index SamplesOf(double seconds) const;
 
  private:
-  /// Samples of the zero-moment point that lead from where it is at rest in one posture to the
-  /// other.
+  /// Samples of the zero-moment point that lead from its place at rest in one posture to that in
+  /// the other.
   Eigen::MatrixX2d ZmpWay(const PlacedPosture& from, const PlacedPosture& to,
                           const std::vector<int>& standing, Eigen::Index samples) const;
   std::optional<Eigen::MatrixXd> BalanceAndCheck(const Stretch& stretch, Refusal& why) const;

@@ -98,7 +98,7 @@ void SizeSupport(StandingRobot& robot) {
   if (robot.limits.zmp_margin < 0.0) robot.limits.zmp_margin = kZmpShare * robot.half_support;
 }
 
-/// By how much a sole is turned about the vertical from where it stands, rad.
+/// Angle about the vertical by which a sole is turned from its pose on the floor, rad.
 double HeadingOff(const StandingRobot& robot, int foot, const PlacedPosture& pose) {
   const Eigen::Matrix3d R = pose.T_world_root.linear() *
                             robot.legs[Size(foot)].SolePose(pose.q).linear() *
@@ -123,7 +123,7 @@ Transform PlaceOnFloor(const StandingRobot& robot, int foot, const Eigen::Vector
   return T_world_sole;
 }
 
-/// Whether the feet of a posture are where they stand, and the others not below the floor.
+/// Whether the standing feet are in their places on the floor, and the others not below it.
 bool FitsTheFloor(const StandingRobot& robot, const std::vector<int>& standing,
                   const Transform& T_world_root, const Eigen::VectorXd& q) {
   constexpr double kOff = 1e-3;  // m: a standing foot is off its place by less, from rounding

@@ -60,7 +60,7 @@ struct LeastSquaresResult {
 };
 
 /// Levenberg-Marquardt from `x0`: Gauss-Newton steps, each the minimum of the linearised problem
-/// under the bounds (BoundedStep), damped only where one does not lower the cost. On one thread:
+/// under the bounds (BoundedStep), damped only if a step does not lower the cost. On one thread:
 /// same input, same bits out.
 LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0,
                          const LeastSquaresOptions& options = {});

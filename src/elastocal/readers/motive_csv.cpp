@@ -167,7 +167,7 @@ class MotiveReader {
     }
   }
 
-  /// Takes the rotation that begins in column i, if one does. Throws InputError where it is not of
+  /// Takes the rotation that begins in column i, if one does. Throws InputError if it is not of
   /// the take's rotation type.
   void FindRotation(std::size_t i, MotiveBody& body) {
     if (columns_[i].quantity != "Rotation") return;

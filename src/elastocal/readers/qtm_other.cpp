@@ -110,7 +110,7 @@ class QtmBodyReader {
   std::vector<double> positions_, rotations_;
 };
 
-/// The value of a line `KEY<tab>value`; empty where there is none.
+/// The value of a line `KEY<tab>value`; empty if there is none.
 std::string_view ValueOf(std::string_view head, const std::string& key) {
   std::size_t at = head.starts_with(key + "\t") ? 0 : head.find("\n" + key + "\t");
   if (at == std::string_view::npos) return {};

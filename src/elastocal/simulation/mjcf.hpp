@@ -55,7 +55,7 @@ struct PhysicalPlate {
 ///   on which the robot stands `s<i>` (i: index into `support`).
 /// - The root of the tree is the waist, with a floating joint: branches are shortest from there,
 ///   and MuJoCo's time grows with the square of their length. With Standing::kWelded, weld
-///   constraints hold the soles to a micrometre; where the robot stands freely, they are boxes or
+///   constraints hold the soles to a micrometre; if the robot stands freely, they are boxes or
 ///   balls on the floor. Without support, the waist is fixed.
 ///
 /// Springs are stiff (1e5 N.m/rad) for the small bodies that they carry. MuJoCo integrates damping

@@ -62,7 +62,7 @@ TextStream::TextStream(std::string_view text) : std::istream(static_cast<std::st
   setg(begin, begin, begin + text.size());
 }
 
-/// Reads a further block of the text; false where there is none. The next line moves to the
+/// Reads a further block of the text; false if there is none. The next line moves to the
 /// beginning of the buffer.
 bool LineReader::Fill() {
   buffer_.erase(0, begin_);

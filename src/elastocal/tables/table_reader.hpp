@@ -67,7 +67,7 @@ bool SplitCells(std::span<char> line, char separator, Quotes quotes,
 class Table {
  public:
   /// Reads the header. The stream must outlive the new object; `source` names it in messages.
-  /// Throws InputError where there is no header, and what Next throws.
+  /// Throws InputError if there is no header, and what Next throws.
   Table(std::istream& stream, const std::string& source);
 
   /// Reads the next row; false at the end. Throws InputError naming file and line: what LineReader
