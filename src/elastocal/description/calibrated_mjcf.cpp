@@ -19,12 +19,12 @@
 namespace elastocal {
 namespace {
 
-constexpr double kSamePlace = 1e-4;  // m and rad: of poses that were written with six digits
+constexpr double kSamePlace = 1e-4;  // m and rad: tolerance of poses written with six digits
 constexpr double kSameAxis = 1e-4;
 // Inertia and damping of springs, as times, s (see simulation/mjcf.hpp).
 constexpr double kSpringInertiaTime = 0.010, kSpringDampingTime = 0.020;
 
-/// Where the URDF has the child link of a joint, in the frame of the body that carries it.
+/// Pose of a joint's child link in the frame of the body that carries it, by the URDF.
 Transform PoseInParent(const RobotTree& tree, std::size_t k, const MjcfBodies& bodies) {
   const Joint& joint = tree.joints[k];
   return bodies.CarrierFrame(tree, k).inverse() *
@@ -86,7 +86,7 @@ void CheckNominal(const MjcfBody& body, const Joint& joint, const Transform& exp
       joint.name, 1e3 * off.translation().norm(), turn * 180.0 / M_PI));
 }
 
-/// Where a piece of text goes in front of an element, on a line of its own.
+/// Inserts text in front of an element, on lines of its own.
 XmlEdit InFrontOf(const std::string& text, const XmlElement& element, const std::string& lines) {
   const std::size_t begin = element.Begin();
   std::size_t line = begin;
@@ -116,8 +116,9 @@ class SpringWriter {
     CollectNames(root);
   }
 
-  /// Those of one joint. `T_parent_root`: the root link in the body that carries the joint's body.
-  /// Whether the body got others around it, in that frame.
+  /// Adds the springs of one joint. `T_parent_root` is the pose of the root link in the body that
+  /// carries the joint's body. Returns whether the body now is in new bodies, whose frame is that
+  /// of the root link.
   bool Add(const std::vector<SeriesSpring>& springs, const MjcfBody& body,
            const std::string& carrier, const XmlElement& motor, const Transform& T_parent_root) {
     std::map<SpringPlace, std::string> joints;
@@ -125,7 +126,7 @@ class SpringWriter {
     if (joints.contains(SpringPlace::kJoint)) {
       edits_.push_back(InFrontOf(text_, motor, joints[SpringPlace::kJoint]));
     }
-    // Behind the motor's: it turns with the foot.
+    // The spring of a sole comes after the motor: it turns with the foot.
     if (joints.contains(SpringPlace::kSole)) {
       edits_.push_back({motor.End(), 0, joints[SpringPlace::kSole]});
     }

@@ -65,7 +65,7 @@ std::map<std::string, double> EncoderOffsets(const CalibrationResult& calibratio
   return offsets;
 }
 
-/// The offsets of the encoders as a controller adds them: one an entry of q.
+/// The offsets of the encoders as a controller adds them: one for each entry of q.
 Eigen::VectorXd CoordinateOffsets(const RobotTree& tree,
                                   const std::map<std::string, double>& encoder_offsets) {
   Eigen::VectorXd offsets = Eigen::VectorXd::Zero(tree.coordinate_count());
@@ -75,9 +75,9 @@ Eigen::VectorXd CoordinateOffsets(const RobotTree& tree,
   return offsets;
 }
 
-/// New origins, by joint, that make up the calibrated robot together with `q_offset` on q. A mimic
-/// joint moves by its leader's offset too, so that its origin takes up the difference to its own
-/// zero offset, which is none where it carries no marker.
+/// New origins, by joint, with which the URDF is the calibrated robot when `q_offset` is added to
+/// q. A mimic joint also moves by its leader's offset. Its origin therefore contains the difference
+/// to its own zero offset, which is zero if it carries no marker.
 std::map<int, Transform> ChangedOrigins(const CalibrationResult& calibration,
                                         const Eigen::VectorXd& q_offset) {
   const ErrorModel& model = calibration.model;
@@ -106,16 +106,16 @@ std::map<int, Transform> ChangedOrigins(const CalibrationResult& calibration,
   return origins;
 }
 
-/// The origin as the URDF has it, without the dust that rounding leaves where there is nothing.
+/// The origin in the form of a URDF; rounding errors near zero become zero.
 UrdfOrigin ToOrigin(const Transform& T, const Eigen::Vector3d& nominal_rpy) {
   constexpr double kDust = 1e-15;  // m and rad
   const auto clean = [](double value) { return std::abs(value) < kDust ? 0.0 : value; };
   return {T.translation().unaryExpr(clean), ToRpy(T.linear(), nominal_rpy).unaryExpr(clean)};
 }
 
-/// Poses of all links in the waist: the calibrated model's and, where it has no errors because
-/// there are no markers, nominal motion. `placed`: q with linkages as their rods with errors put
-/// them.
+/// Poses of all links in the frame of the waist, by the calibrated model; joints that carry no
+/// marker have no errors and move as nominal. `placed` is q with the joints of linkages where the
+/// rods with errors put them.
 std::vector<Transform> CalibratedLinks(const ErrorModel& model, const Geometry& geometry,
                                        const Eigen::VectorXd& q, const Eigen::VectorXd& placed) {
   const RobotTree& tree = model.tree;
@@ -158,8 +158,9 @@ double LargestDifference(const CalibrationResult& calibration, const RobotTree& 
   return largest;
 }
 
-/// Where inverse kinematics in closed form is off by what matters to a hand: half a millimetre, of
-/// axes that are no longer parallel over half a metre.
+/// Warnings about exact relations of axes that the calibration breaks so far that inverse
+/// kinematics in closed form is off by half a millimetre: of a wrist by this distance, of parallel
+/// axes by the angle that gives it over half a metre.
 std::vector<std::string> BrokenGeometry(const RobotTree& nominal, const RobotTree& calibrated) {
   constexpr double kBrokenWrist = 0.5e-3;   // m
   constexpr double kBrokenParallel = 1e-3;  // rad
@@ -184,8 +185,8 @@ std::vector<std::string> BrokenGeometry(const RobotTree& nominal, const RobotTre
   return warnings;
 }
 
-/// A correction of a joint that carries branches without markers beside one with markers moves
-/// these as well, though nothing was measured there.
+/// Warnings about corrections of joints that carry a branch with markers and others without: the
+/// latter are moved as well, although nothing was measured there.
 std::vector<std::string> UnrecordedBranches(const CalibrationResult& calibration) {
   const ErrorModel& model = calibration.model;
   std::set<int> changed;
@@ -252,8 +253,8 @@ namespace {
 constexpr std::array kXacroOffsets = {"_x_offset",     "_y_offset",   "_z_offset", "_roll_offset",
                                       "_pitch_offset", "_yaw_offset", "_offset"};
 
-/// How the properties of each joint begin: a name of xacro has letters, digits and '_' alone. A
-/// joint of whose properties one would have the name of another joint's gets a number behind it.
+/// Beginning of the property names of each joint: names of xacro have only letters, digits and '_'.
+/// If a property would have the name of another joint's property, a number is added.
 std::map<std::string, std::string> XacroNames(const CalibratedUrdf& calibrated) {
   std::set<std::string> joints, taken;
   for (const auto& [joint, origin] : calibrated.calibrated) joints.insert(joint);
@@ -276,7 +277,7 @@ std::map<std::string, std::string> XacroNames(const CalibratedUrdf& calibrated) 
   };
   const auto is_free = [&](const std::string& property) { return !taken.contains(property); };
   std::map<std::string, std::string> names;
-  for (const bool as_it_is : {true, false}) {  // whose names are fine keep them
+  for (const bool as_it_is : {true, false}) {  // first the joints that keep their names
     for (const std::string& joint : joints) {
       const std::string property = as_property(joint);
       if ((property == joint) != as_it_is) continue;

@@ -60,7 +60,8 @@ Eigen::Quaterniond ReadQuaternion(const XmlElement& body) {
   return quaternion.normalized();
 }
 
-/// What a `*` stands for where `pattern` fits a name; the name itself where there is no `*`.
+/// The part of a name for which the `*` of `pattern` stands, or the name itself without `*`;
+/// nothing if the pattern does not fit.
 std::optional<std::string> RestOf(const std::string& name, const std::string& pattern) {
   const std::size_t star = pattern.find('*');
   if (star == std::string::npos) {

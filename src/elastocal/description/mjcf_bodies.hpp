@@ -11,25 +11,27 @@
 
 namespace elastocal {
 
-/// By joint of the URDF, its name in an MJCF; a joint that is not listed has the same name there.
+/// Names of joints in an MJCF, by their names in the URDF; a joint that is not listed has the same
+/// name in both.
 using MjcfJointNames = std::map<std::string, std::string>;
 
-/// By rules `URDF=MJCF`, in each of which a `*` may stand for the rest of a name
-/// (`panda_*=*`). The first rule that fits a joint counts. Throws InputError for a rule without
-/// '=', with `*` on one side only, or that fits no joint.
+/// Names of joints by rules `URDF=MJCF`, in which a `*` on both sides may stand for the rest of a
+/// name (`panda_*=*`). The first rule that fits a joint counts. Throws InputError for a rule
+/// without '=', with `*` on one side only, or that fits no joint.
 MjcfJointNames ReadMjcfJointNames(const RobotTree& tree, const std::vector<std::string>& rules);
 
+/// A body of an MJCF.
 struct MjcfBody {
   XmlElement element;
   int parent = -1;         ///< the body that carries it; -1: the world
   std::string childclass;  ///< default class of its joints; empty: the outermost one
-  int joint = -1;          ///< of the URDF, that moves it; -1: none of these
-  bool moves = false;      ///< has a joint, be it of the URDF or not
+  int joint = -1;          ///< joint of the URDF that moves it; -1: none
+  bool moves = false;      ///< whether it has a joint, of the URDF or not
 
   std::string Name() const { return element.Has("name") ? element.Text("name") : ""; }
 };
 
-/// The bodies of an MJCF, found by their joints: what a body is called does not matter.
+/// The bodies of an MJCF, found by their joints; names of bodies do not matter.
 class MjcfBodies {
  public:
   /// Throws InputError naming file and line: a joint of the URDF that the model does not have; two
@@ -41,10 +43,11 @@ class MjcfBodies {
   std::string CarrierName(const MjcfBody& body) const;
   const std::string& JointName(std::size_t joint) const { return joint_names_[joint]; }
 
-  /// The frame of the body that carries that of a joint, in the moving body of `tree` that it is a
-  /// part of: by the joint that moves it, the link of its name, or else as the MJCF has it. Bodies
-  /// on which no joint of the URDF acts are the root link. Throws InputError where the two are not
-  /// parts of one moving body.
+  /// Frame of the body that carries the moved body of a joint, in the frame of the moving body of
+  /// `tree` to which it belongs. It is found by the joint that moves it, by the link with its name,
+  /// or else by its pose in the MJCF. A body that no joint of the URDF moves belongs to the root
+  /// link. Throws InputError if the carrier is not part of the moving body that carries the joint
+  /// in `tree`.
   Transform CarrierFrame(const RobotTree& tree, std::size_t joint) const;
 
  private:
@@ -61,8 +64,8 @@ class MjcfBodies {
   std::vector<std::string> joint_names_;  ///< likewise, in the MJCF
 };
 
-/// Where the MJCF has a body in the one that carries it. Throws InputError for an orientation that
-/// is not given by `quat`.
+/// Pose of a body in the body that carries it, by the MJCF. Throws InputError for an orientation
+/// that is not given by `quat`.
 Transform ReadBodyPose(const XmlElement& body);
 
 }  // namespace elastocal

@@ -28,7 +28,7 @@ void MjcfJointDefaults::Collect(const XmlElement& section, const std::string& na
   classes_[name].around = around;
   for (const XmlElement& child : section.Children()) {
     if (child.Tag() == "joint") classes_[name].entries.push_back(child);
-    // Each class is entered once: what is within itself ends nowhere.
+    // Each class is entered once, because a class within itself would never end.
     if (child.Tag() == "default" && !classes_.contains(child.Text("class"))) {
       Collect(child, child.Text("class"), name);
     }

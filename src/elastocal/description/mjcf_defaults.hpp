@@ -10,14 +10,15 @@
 
 namespace elastocal {
 
-/// What the section `default` of an MJCF says of joints, by class.
+/// The defaults of joints in the section `default` of an MJCF, by class.
 class MjcfJointDefaults {
  public:
   explicit MjcfJointDefaults(const XmlElement& mujoco);
 
-  /// The element that gives an attribute of a joint: the joint itself, or the default of its class
-  /// (`childclass`, that of its body, where it names none; empty: the outermost one) or of a class
-  /// around that. None where MuJoCo's own default counts. Throws InputError for an unknown class.
+  /// The element that gives an attribute of a joint: the joint itself, or else the default of its
+  /// class or of a class around that. A joint that names no class has `childclass`, that of its
+  /// body (empty: the outermost class). Nothing if MuJoCo's own default counts. Throws InputError
+  /// for an unknown class.
   std::optional<XmlElement> Giver(const XmlElement& joint, const std::string& childclass,
                                   const char* attribute) const;
 

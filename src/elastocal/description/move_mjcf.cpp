@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What assets of an MJCF have of files.
+/// Files that the assets of an MJCF name.
 struct AssetFiles {
   bool any = false;
   std::vector<XmlElement> models;  ///< other MJCFs, which no compiler's folder is about

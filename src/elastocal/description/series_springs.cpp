@@ -31,7 +31,7 @@ Transform TwistedInChild(const ErrorModel& model, const Geometry& geometry,
          T_parent_twisted;
 }
 
-/// Whose first joint is `k`, and no other leg's; nothing if there is none.
+/// The leg whose first joint is `k`, if `k` belongs to no other leg; else null.
 const Leg* LegFrom(const std::vector<Leg>& legs, int k) {
   const Leg* found = nullptr;
   for (const Leg& leg : legs) {
@@ -42,7 +42,7 @@ const Leg* LegFrom(const std::vector<Leg>& legs, int k) {
   return found;
 }
 
-/// Adds springs about one point, where their compliance is positive.
+/// Adds springs about one point whose compliance is positive.
 class SpringCollector {
  public:
   std::vector<SeriesSpring> springs;

@@ -13,16 +13,16 @@
 
 namespace elastocal {
 
-/// What gives way between the root link and the child link of a joint, from the root outwards.
+/// Place of a spring between the root link and the child link of a joint, from the root outwards.
 enum class SpringPlace {
-  kLeg,       ///< a leg as a whole (eq. 6), in front of its first joint
-  kRootLink,  ///< the root link, as the joint sees it
-  kJoint,     ///< the joint, in front of its motor (eq. 5)
-  kSole,      ///< what is below a foot, behind the motor of the leg's last joint
+  kLeg,       ///< a leg as a whole (eq. 6), before its first joint
+  kRootLink,  ///< bending of the root link up to the joint
+  kJoint,     ///< the joint itself, before its motor (eq. 5)
+  kSole,      ///< the sole below a foot, after the motor of the leg's last joint
 };
 
-/// A spring in series with the motor of a joint, whose encoder does not see how far it gives way:
-/// its compliance times the load about (along) its axis.
+/// A spring in series with the motor of a joint. It deflects by its compliance times the load about
+/// (along) its axis, which the joint's encoder does not measure.
 struct SeriesSpring {
   int joint = 0;  ///< of the robot tree
   SpringPlace place = SpringPlace::kJoint;
@@ -30,25 +30,26 @@ struct SeriesSpring {
   bool slides = false;
   Eigen::Vector3d axis;     ///< unit vector; see SeriesSprings for the frame
   Eigen::Vector3d anchor;   ///< a point of the axis, m
-  double compliance = 0.0;  ///< rad/(N.m), or of one that slides m/N; positive
+  double compliance = 0.0;  ///< rad/(N.m), or m/N for a spring that slides; positive
 };
 
-/// The springs of a calibration: those of one joint together, from the root outwards. Axes and
-/// anchors of a joint's own are in the frame of its child link at position 0 as `calibrated` (the
-/// calibrated URDF) has it, those of legs and of the root link in the frame of the root link.
+/// The springs of a calibration, those of one joint together, from the root outwards. Axes and
+/// anchors of a joint's own springs are in the frame of its child link at position 0 as
+/// `calibrated` (the calibrated URDF) has it; those of legs and of the root link are in the frame
+/// of the root link.
 ///
-/// Those of a joint and of the root link are those of eq. 5, but for a turn by a vector, which is
-/// taken as turns about x, y and z one after the other: the difference is the product of two
-/// deflections. Those of a leg are in the axes of the foot, which turn against the root link with
-/// the leg. Here they are where they are when both are level: in a posture in which they are
-/// inclined by an angle a, compliances are mixed by sin a. A leg without a first joint of its own
-/// on the root link has none. Compliances of 0 are left out.
+/// Springs of a joint and of the root link are those of eq. 5, except that a rotation vector is
+/// replaced by rotations about x, y and z one after the other; the difference is the product of two
+/// deflections. Springs of a leg (eq. 6) have the axes of the foot, which turn against the root
+/// link with the leg. Here these axes are fixed as they are when both are level: in a posture in
+/// which they are inclined by an angle a, compliances are mixed by sin a. A leg without a first
+/// joint of its own on the root link has no springs. Compliances of 0 are left out.
 std::vector<SeriesSpring> SeriesSprings(const CalibrationResult& calibration,
                                         const RobotTree& calibrated, const std::vector<Leg>& legs);
 
-/// What gives way below the feet, of those that are told: along the axis that is upright while the
-/// foot is flat, in the frame of the child link of the leg's last joint. That link is then on the
-/// floor's side of the spring: its own weight is no load.
+/// The springs below the feet that `soles` has: along the axis that is upright while the foot is
+/// flat, in the frame of the child link of the leg's last joint. That link is then on the floor's
+/// side of the spring, so that its own weight is no load.
 std::vector<SeriesSpring> SpringsOfSoles(const std::vector<SoleSpring>& soles,
                                          const RobotTree& calibrated, const std::vector<Leg>& legs);
 

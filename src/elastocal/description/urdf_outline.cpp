@@ -125,7 +125,7 @@ void FindRoot(UrdfOutline& outline) {
 
 bool IsFree(const UrdfJoint& joint) { return joint.type == "floating" || joint.type == "planar"; }
 
-/// What floating and planar joints separate, each named by its own root link.
+/// The parts into which floating and planar joints divide a URDF, each identified by its root link.
 class Parts {
  public:
   explicit Parts(const UrdfOutline& outline) : root_(outline.links.size()) {
@@ -141,7 +141,8 @@ class Parts {
   bool Has(int root, int link) const { return root_[link] == root; }
   int movable(int root) const { return parts_.at(root).movable; }
 
-  /// The one with the most movable joints; of equal ones the larger, and not the world alone.
+  /// Root link of the part that is the robot: the part with the most movable joints; of several,
+  /// the one with the most links; of these, rather not the part of the URDF's root.
   int Robot(const UrdfOutline& outline) const {
     int best = -1;
     const auto rank = [&](int root) {
@@ -171,8 +172,8 @@ class Parts {
   std::map<int, Part> parts_;  ///< by root
 };
 
-/// Keeps the robot of what floating and planar joints part. Above it is the world, in which it
-/// stands free; what hangs on it or beside it is said to be left out.
+/// Keeps the part that is the robot. Other parts are dropped, and warnings say so, except for a
+/// part above the robot without movable joints: it is the world in which the robot is free.
 void KeepRobot(UrdfOutline& outline) {
   if (std::none_of(outline.joints.begin(), outline.joints.end(), IsFree)) return;
   const Parts parts(outline);
@@ -197,7 +198,7 @@ void KeepRobot(UrdfOutline& outline) {
   outline.root = robot;
 }
 
-/// A joint that follows one that cannot move cannot move either.
+/// Makes joints fixed that follow a joint that cannot move.
 void FixFollowersOfFixed(UrdfOutline& outline) {
   for (bool found = true; found;) {
     found = false;

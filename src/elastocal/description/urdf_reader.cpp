@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Roll, pitch and yaw by a quaternion, which leaves the rotation orthonormal up to rounding.
+/// The transform of an origin. Its rotation is computed by a quaternion, so that it is orthonormal
+/// up to rounding.
 Transform ToTransform(const UrdfOrigin& origin) {
   const Eigen::Vector3d half = 0.5 * origin.rpy;
   const double cr = std::cos(half.x()), cp = std::cos(half.y()), cy = std::cos(half.z());
@@ -27,11 +28,11 @@ Transform ToTransform(const UrdfOrigin& origin) {
   return Eigen::Translation3d(origin.xyz) * rotation.normalized();
 }
 
-/// Moments in kg.mm^2 or g.mm^2, as some CAD programs write them, would be those of a body of the
-/// size of a street.
+/// Whether moments of inertia are in kg.mm^2 or g.mm^2, as some CAD programs write them: in kg.m^2
+/// they would be those of a body of the size of a street.
 bool InWrongUnit(const Eigen::Matrix3d& inertia, double mass) {
-  constexpr double kLargestRadius_m = 10.0;  // of gyration
-  constexpr double kNotable = 10.0;          // kg.m^2: a mere frame's do no harm
+  constexpr double kLargestRadius_m = 10.0;  // radius of gyration
+  constexpr double kNotable = 10.0;          // kg.m^2: smaller ones, of mere frames, do no harm
   const double moment = 0.5 * inertia.trace();
   return moment > kNotable && moment > mass * kLargestRadius_m * kLargestRadius_m;
 }
@@ -47,7 +48,7 @@ Link ReadLink(const UrdfLink& source, std::vector<std::string>& warnings) {
   link.mass = inertial->Get("mass").Number("value");
   link.com = T_link_inertial.translation();
   const auto found = inertial->Find("inertia");
-  if (!found) return link;  // mass and place are what statics needs
+  if (!found) return link;  // statics needs only mass and centre of mass
   const XmlElement& entries = *found;
   // Numbers may throw, which Eigen does not stand in the middle of a list.
   const double ixx = entries.Number("ixx"), ixy = entries.Number("ixy"),
@@ -69,7 +70,7 @@ Link ReadLink(const UrdfLink& source, std::vector<std::string>& warnings) {
 }
 
 Eigen::Vector3d ReadAxis(const UrdfJoint& joint, std::vector<std::string>& warnings) {
-  constexpr double kShortest = 1e-6;  // below this it is rounding noise, not a direction
+  constexpr double kShortest = 1e-6;  // a shorter axis is rounding noise and no direction
   constexpr double kRounding = 0.1;
   const auto axis = joint.element.FindFirst("axis");
   if (!axis) return Eigen::Vector3d::UnitX();
@@ -91,8 +92,8 @@ Eigen::Vector3d ReadAxis(const UrdfJoint& joint, std::vector<std::string>& warni
   return xyz.stableNormalized().normalized();
 }
 
-/// A joint that can move has a velocity, and a motor or a spring: a limit of 0 is a place that was
-/// left empty.
+/// Removes limits of 0 for velocity and effort: a joint that can move has both, so that 0 stands
+/// for a number that was not given.
 void DropZeroLimits(const UrdfJoint& joint, JointLimits& limits,
                     std::vector<std::string>& warnings) {
   if (!(limits.lower < limits.upper)) return;
@@ -125,7 +126,7 @@ JointLimits ReadLimits(const UrdfJoint& joint, std::vector<std::string>& warning
                        FormatNumber(limits.upper) + "; they are exchanged");
     std::swap(limits.lower, limits.upper);
   }
-  // Of wheels and turntables that are not called continuous. Nobody counts so many turns.
+  // Limits of wheels and turntables that should be continuous. Nobody counts so many turns.
   constexpr double kEndless = 1e3;
   const bool endless = limits.lower <= -kEndless && limits.upper >= kEndless;
   if (endless && joint.type == "revolute") {
@@ -260,8 +261,8 @@ class TreeBuilder {
     DropWrongMimicLimits(joint);
   }
 
-  /// Limits within which the joint cannot follow its driver are wrong; most often a sign was
-  /// forgotten.
+  /// Drops limits of a mimic joint within which it cannot follow its driver. They are wrong; most
+  /// often a sign was forgotten.
   void DropWrongMimicLimits(Joint& joint) {
     const JointLimits& driver = tree_.joints[tree_.coordinate_joint[joint.coordinate]].limits;
     const auto [lower, upper] = std::minmax({joint.multiplier * driver.lower + joint.offset,

@@ -261,7 +261,7 @@ const Bound* FindBound(const std::string& key) {
   }();
   const std::string plain = WithoutIndices(key);
   if (const auto found = index.find(plain); found != index.end()) return found->second;
-  // Names of joints may have dots: every beginning is tried.
+  // Names of joints may have dots, so that every beginning of the key is tried.
   for (std::size_t dot = plain.find('.'); dot != std::string::npos;
        dot = plain.find('.', dot + 1)) {
     const auto found = index.find(plain.substr(0, dot) + ".*");

@@ -14,7 +14,7 @@ namespace elastocal {
 void WriteFile(const std::filesystem::path& file, const std::string& contents);
 void WriteFiles(const std::vector<std::pair<std::filesystem::path, std::string>>& files);
 
-/// Whether two paths lead to one file; false where one of them leads to none.
+/// Whether two paths lead to one file; false if one of them leads to no file.
 bool SameFile(const std::filesystem::path& a, const std::filesystem::path& b);
 
 }  // namespace elastocal

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// That nothing else is replaced than a file that begins so, or an empty one.
+/// Throws InputError if an existing file does not begin with `beginning` and is not empty.
 void CheckBeginning(const fs::path& file, const std::string& beginning) {
   std::error_code error;
   if (beginning.empty() || !fs::is_regular_file(file, error)) return;
@@ -37,7 +37,7 @@ void CheckBeginning(const fs::path& file, const std::string& beginning) {
                    "it");
 }
 
-/// That nothing else is replaced than a file that this program wrote, or an empty one.
+/// Throws InputError if this program did not write an existing file and it is not empty.
 void CheckOwnFile(const fs::path& file, const OutputSet::IsOwn& is_own) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return;
@@ -55,7 +55,7 @@ void CheckOwnFile(const fs::path& file, const OutputSet::IsOwn& is_own) {
 
 bool IsStandardOutput(const fs::path& file) { return file == "-" || file == "/dev/stdout"; }
 
-/// Where the symbolic links that `file` may be lead, also when nothing is there yet.
+/// The path to which symbolic links lead from `file`, also if nothing is there yet.
 fs::path FollowLinks(const fs::path& file) {
   constexpr int kMostLinks = 40;
   fs::path target = file;
@@ -68,7 +68,7 @@ fs::path FollowLinks(const fs::path& file) {
   FailToWrite(file, "too many symbolic links");
 }
 
-/// Whether two paths name one file, whether it is there or not.
+/// Whether two paths name one file, existing or not.
 bool SamePlace(const fs::path& a, const fs::path& b) {
   if (SameFile(a, b)) return true;
   std::error_code error;
@@ -80,7 +80,7 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// What is no regular file cannot be written beforehand.
+/// Writes to a device or pipe, which cannot be staged.
 void WriteStream(const fs::path& file, const std::string& contents) {
   errno = 0;
   const auto size = static_cast<std::streamsize>(contents.size());
@@ -100,7 +100,7 @@ void WriteStream(const fs::path& file, const std::string& contents) {
 struct OutputSet::State {
   struct Output {
     fs::path given;
-    fs::path target;                           // where links lead; empty for streams
+    fs::path target;                           // path behind links; empty for streams
     std::optional<std::string> contents = {};  // of Set
     bool staged = false;                       // written by the caller at its StagingPath
   };
@@ -124,7 +124,7 @@ struct OutputSet::State {
     throw std::invalid_argument("OutputSet: " + file.string() + " was not declared");
   }
 
-  /// One more output; an empty path is passed over.
+  /// Adds an output; an empty path is passed over.
   void Add(const fs::path& file) {
     if (file.empty()) return;
     for (const fs::path& input : inputs) {
@@ -162,7 +162,8 @@ struct OutputSet::State {
     staging.try_emplace(folder, folder, file);
   }
 
-  /// The files on the disk, in their staging folders, with the modes of those that they replace.
+  /// Writes the files to the disk, in their staging folders, with the modes of those that they
+  /// replace.
   void WriteStaged() {
     for (const Output& output : outputs) {
       if (output.target.empty() || (!output.contents && !output.staged)) continue;
@@ -180,7 +181,7 @@ struct OutputSet::State {
     }
   }
 
-  /// From here on the files of a folder are published, come what may.
+  /// Commits the files of a folder: from here on they are published, even if the run is killed.
   void Commit(const fs::path& folder, const Staging& place) {
     std::string commit;
     for (const Output& output : outputs) {
@@ -196,7 +197,7 @@ struct OutputSet::State {
     SyncFolder(place.path());
   }
 
-  /// All folders, or none where one of them fails.
+  /// Commits all folders, or none if one of them fails.
   void CommitAll() {
     try {
       for (const auto& [folder, place] : staging) Commit(folder, place);

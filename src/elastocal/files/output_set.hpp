@@ -41,42 +41,43 @@ class OutputSet {
   OutputSet(OutputSet&&) noexcept;
   OutputSet& operator=(OutputSet&&) noexcept;
 
-  /// Files that the run reads. Empty paths are passed over. Throws InputError where one of them is
-  /// declared as an output.
+  /// Names files that the run reads. Empty paths are passed over. Throws InputError if one of them
+  /// is declared as an output.
   void Protect(const std::vector<std::filesystem::path>& inputs);
 
-  /// A file that the run may write. An empty path is passed over. Throws InputError where the file
-  /// is an input, or where it is declared already (two outputs under one name). `beginning`: how
-  /// all files of this kind begin; a file that is there and begins otherwise is somebody else's,
-  /// and InputError.
+  /// Declares a file that the run may write. An empty path is passed over. `beginning` is how all
+  /// files of this kind begin. Throws InputError if the file is an input, if it is declared already
+  /// (two outputs under one name), or if an existing file begins otherwise, because it is then
+  /// somebody else's.
   void Declare(const std::filesystem::path& file, const std::string& beginning = "");
 
-  /// Likewise for files that do not begin alike: whether this program wrote what is in a file.
+  /// Says whether this program wrote the contents of a file, for files that do not begin alike.
   using IsOwn = std::function<bool(const std::string& contents)>;
   void Declare(const std::filesystem::path& file, const IsOwn& is_own);
 
-  /// Makes the folders and tries whether each declared file can be written. Throws InputError
-  /// naming the file as it was given: it is a folder, it or its folder is read-only, its folder
-  /// cannot be made. Finishes first what an earlier run committed.
+  /// Finishes what an earlier run committed, makes the folders, and checks that each declared file
+  /// can be written. Throws InputError naming the file as it was given: it is a folder, it or its
+  /// folder is read-only, its folder cannot be made.
   void Prepare();
 
-  /// Contents of a declared file, kept until Publish. An empty path is passed over. Throws
-  /// std::invalid_argument for a file that was not declared.
+  /// Sets the contents of a declared file, which are kept until Publish. An empty path is passed
+  /// over. Throws std::invalid_argument for a file that was not declared.
   void Set(const std::filesystem::path& file, std::string contents);
 
-  /// Whether the file is declared, and its contents where Set gave them (else null).
+  /// Whether the file is declared; and its contents if Set gave them, else null.
   bool IsDeclared(const std::filesystem::path& file) const;
   const std::string* Contents(const std::filesystem::path& file) const;
 
   /// The declared files in a folder.
   std::vector<std::filesystem::path> DeclaredIn(const std::filesystem::path& folder) const;
 
-  /// Where to write a declared file piece by piece instead of Set, after Prepare. Throws
-  /// std::invalid_argument where the file is not declared, or is a device, a pipe or "-".
+  /// Path at which the caller may write a declared file piece by piece, instead of Set. Call it
+  /// after Prepare. Throws std::invalid_argument if the file is not declared, or is a device, a
+  /// pipe or "-".
   std::filesystem::path StagingPath(const std::filesystem::path& file);
 
-  /// Gives all files their names. Throws InputError naming the file where the file system fails; a
-  /// failure before the commit leaves the earlier files as they were. Called once.
+  /// Publishes all files of the run. Throws InputError naming the file if the file system fails; a
+  /// failure before the commit leaves the earlier files as they were. Call it once.
   void Publish();
 
  private:
@@ -85,8 +86,8 @@ class OutputSet {
 };
 
 /// Finishes in `folder` what a killed run had committed, and removes what it had only begun.
-/// Commands that read a folder of results call it first. Does nothing where there is no such folder
-/// or no permission.
+/// Commands that read a folder of results call it first. Does nothing if there is no such folder or
+/// no permission.
 void RecoverOutputs(const std::filesystem::path& folder);
 
 }  // namespace elastocal

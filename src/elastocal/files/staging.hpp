@@ -8,14 +8,14 @@
 
 namespace elastocal {
 
-// What OutputSet is made of: files that wait in a staging folder until all of a run are whole, and
+// Parts of OutputSet: files wait in a staging folder until all files of a run are complete, and
 // then get their names together.
 
 inline constexpr const char* kStagingPrefix = ".elastocal-";
 // In a staging folder, beside the files of the run.
 inline constexpr const char* kCommit = ".commit";
 
-/// What the system says about the last failure.
+/// The system's message about the last failure (errno).
 std::string SystemError();
 
 /// Throws InputError "cannot write FILE: REASON".
@@ -24,14 +24,15 @@ std::string SystemError();
 /// Waits until the names in a folder are on the disk.
 void SyncFolder(const std::filesystem::path& folder);
 
-/// Writes a new file and waits until it is on the disk. Throws in the name of `given`.
+/// Writes a new file and waits until it is on the disk. Throws InputError naming the file as
+/// `given`.
 void WriteNew(const std::filesystem::path& path, const std::string& contents,
               const std::filesystem::path& given);
 
 /// Waits until a file that somebody else wrote is on the disk.
 void SyncFile(const std::filesystem::path& path, const std::filesystem::path& given);
 
-/// Folders made for files; those that are empty in the end are removed again.
+/// Makes folders for files; on destruction, those that are still empty are removed.
 class NewFolders {
  public:
   ~NewFolders();
@@ -41,7 +42,7 @@ class NewFolders {
   std::vector<std::filesystem::path> created_;
 };
 
-/// Keeps others from making or judging staging folders in a folder meanwhile.
+/// Locks a folder: while the object exists, no other process makes or judges staging folders in it.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder);
@@ -53,13 +54,14 @@ class FolderLock {
   int descriptor_;
 };
 
-/// A staging folder. Its run holds the lock of the owner's file in it: whoever gets that lock knows
-/// that the run is gone.
+/// A staging folder. Its run holds a lock on the owner file in it. A process that gets this lock
+/// knows that the run has ended.
 class Staging {
  public:
-  /// A new one in `folder`, for `file`.
+  /// Makes a new staging folder in `folder`, for `file`.
   Staging(const std::filesystem::path& folder, const std::filesystem::path& file);
-  /// One that is there already, under the lock of its folder; it is owned if its run is gone.
+  /// Takes an existing staging folder, under the lock of its folder. It is owned if its run has
+  /// ended.
   explicit Staging(const std::filesystem::path& path);
   Staging(const Staging&) = delete;
   Staging& operator=(const Staging&) = delete;
@@ -74,7 +76,7 @@ class Staging {
   bool owned_ = false;
 };
 
-/// Interrupts wait while files get their names.
+/// Holds back interrupting signals while it exists, so that files get their names together.
 class SignalsHeld {
  public:
   SignalsHeld();
@@ -86,8 +88,8 @@ class SignalsHeld {
   sigset_t before_{};
 };
 
-/// Does what the commit of a staging folder says, as far as it is not done yet: "+NAME" moves a
-/// file into the folder around it, "-NAME" removes one there; each entry ends with a NUL.
+/// Carries out the commit of a staging folder, as far as it is not done yet: "+NAME" moves a file
+/// into the folder around it, "-NAME" removes one there. Each entry ends with a NUL.
 void ApplyCommit(const Staging& staging);
 
 }  // namespace elastocal

@@ -17,16 +17,16 @@ struct XmlEdit {
   std::string text;
 };
 
-/// A text as it stands in the value of an attribute.
+/// A text with the escapes that it needs in the value of an attribute.
 std::string EscapedXml(const std::string& text);
 
-/// Gives an attribute this value; adds it where the element has none.
+/// Sets an attribute to a value; adds the attribute if the element does not have it.
 XmlEdit SetAttribute(const XmlElement& element, const char* name, const std::string& value);
 
-/// Puts an element in front of what another one holds, on a line of its own where the next tag is.
+/// Inserts an element as the first child of `into`; on a line of its own if the next tag is on one.
 XmlEdit InsertElement(const std::string& text, const XmlElement& into, const std::string& element);
 
-/// The text with these edits, which do not overlap, and not a byte else changed.
+/// The text with these edits, which must not overlap. Every other byte stays as it is.
 std::string ApplyEdits(const std::string& text, std::vector<XmlEdit> edits);
 
 /// Three numbers of 17 significant digits with spaces between them.

@@ -14,12 +14,12 @@ namespace elastocal {
 
 class XmlElement;
 
-/// A parsed XML text whose elements know where they stand in it.
+/// A parsed XML text whose elements know their places in the text.
 class XmlText {
  public:
-  /// Both must outlive the object. Throws InputError naming file and line: malformed XML, no
-  /// element or several at the top, a NUL byte, more than 16 MiB. Only UTF-8 is read, whatever the
-  /// text declares.
+  /// Text and source must outlive the object. Throws InputError naming file and line: malformed
+  /// XML, no element or several at the top, a NUL byte, more than 16 MiB. Only UTF-8 is read,
+  /// whatever the text declares.
   XmlText(const std::string& text, const std::string& source);
   XmlText(const XmlText&) = delete;
   XmlText& operator=(const XmlText&) = delete;
@@ -30,7 +30,7 @@ class XmlText {
   friend class XmlElement;
 
   [[noreturn]] void Fail(std::size_t place, const std::string& message) const;
-  /// Where in the text a name or value stands that the parser returned.
+  /// Place in the text of a name or value that the parser returned.
   std::size_t Offset(const char* parsed) const { return parsed - buffer_.data(); }
 
   const std::string& text_;
@@ -39,8 +39,8 @@ class XmlText {
   pugi::xml_document tree_;
 };
 
-/// An element with checked access to what is in it. All methods throw InputError naming file and
-/// line where the file does not hold what is asked for.
+/// An element with checked access to its attributes and children. All methods throw InputError
+/// naming file and line if the file does not hold what is asked for.
 class XmlElement {
  public:
   /// The text must outlive the element.
@@ -50,19 +50,19 @@ class XmlElement {
 
   std::string_view Tag() const { return node_.name(); }
   std::vector<XmlElement> Children() const;
-  /// The child element of this name. Programs do not agree on which of two counts, so a second one
-  /// is an error.
+  /// The child element with this name. A second one is an error, because programs do not agree on
+  /// which of two counts.
   std::optional<XmlElement> Find(const char* child) const;
-  /// The first child element of this name, whatever follows.
+  /// The first child element with this name; others may follow.
   std::optional<XmlElement> FindFirst(const char* child) const;
   XmlElement Get(const char* child) const;
 
   std::size_t AttributeCount() const;
   bool Has(const char* attribute) const { return !node_.attribute(attribute).empty(); }
-  /// UTF-8, not empty and without control characters.
+  /// Text of an attribute; it must be UTF-8, not empty and without control characters.
   std::string Text(const char* attribute) const;
-  /// A number, and three numbers with spaces between them, finite and within the bounds that
-  /// bounds.hpp has for the element's attribute.
+  /// A number, or three numbers with spaces between them (Vector). They must be finite and within
+  /// the bounds that bounds.hpp has for the element's attribute.
   double Number(const char* attribute) const;
   double NumberOr(const char* attribute, double otherwise) const;
   Eigen::Vector3d Vector(const char* attribute) const;
@@ -73,10 +73,10 @@ class XmlElement {
   };
   /// The value of an attribute that is there, without its quotes.
   Range ValueRange(const char* attribute) const;
-  /// After the name in the start tag, and after the start tag.
+  /// Place after the name in the start tag (NameEnd), and after the start tag (StartTagEnd).
   std::size_t NameEnd() const;
   std::size_t StartTagEnd() const;
-  /// The element's first character, and behind its last one, that of its end tag.
+  /// Place of the element's first character (Begin), and after its end tag (End).
   std::size_t Begin() const { return NameEnd() - Tag().size() - 1; }
   std::size_t End() const;
 

@@ -17,8 +17,8 @@ constexpr NumberRange kPositiveOrInfinity = {.lower = 0.0, .with_upper = true};
 constexpr NumberRange kFraction = {0.0, 1.0};
 constexpr NumberRange kFractionOrOne = {.lower = 0.0, .upper = 1.0, .with_upper = true};
 
-/// A value of a YAML file that knows its line and the keys that lead to it. Every method that asks
-/// for something the file does not hold throws InputError naming file, line and key, what was
+/// A value of a YAML file that knows its line and the keys that lead to it. If the file does not
+/// hold what a method asks for, the method throws InputError naming file, line and key, what was
 /// found and what was expected.
 class YamlValue {
  public:
@@ -28,19 +28,19 @@ class YamlValue {
   static YamlValue Parse(const std::string& text, const std::string& source);
 
   [[noreturn]] void Fail(const std::string& message) const;
-  /// Fails with what stands there and `expected` unless `fine`.
+  /// Unless `fine`, throws InputError with the value found and `expected`.
   void Expect(bool fine, const std::string& expected) const;
 
   int line() const { return line_; }
   bool IsScalar() const { return kind_ == Kind::kScalar; }
 
-  /// Of a mapping. Nothing at all (`key:` and the end of the line) is an empty one.
+  /// For a mapping. An empty value (`key:` and the end of the line) is an empty mapping.
   void ExpectKeys(const std::vector<std::string>& known) const;
   std::optional<YamlValue> Find(const std::string& key) const;
   YamlValue Get(const std::string& key) const;
   const std::vector<std::pair<std::string, YamlValue>>& Entries() const;
 
-  /// Of a list. Nothing at all is an empty one.
+  /// For a list. An empty value is an empty list.
   std::vector<YamlValue> Items() const;
 
   /// Text that is not empty and not unreasonably long.
@@ -48,18 +48,19 @@ class YamlValue {
   /// A finite number.
   double Number() const;
   double Number(const NumberRange& range) const;
-  /// A number within the bounds of the keys that lead to it (bounds.hpp), which has an entry there.
+  /// A number within the bounds of the keys that lead to it; bounds.hpp must have an entry for
+  /// them.
   double Bounded() const;
   /// A whole number of at least `least` and at most `most`.
   std::int64_t Integer(std::int64_t least, std::int64_t most) const;
   bool Boolean() const;
 
-  /// Of a mapping: what the key holds, a number times `unit`, goes into `option`, which stays as it
-  /// is where there is no such key.
+  /// For a mapping: sets `option` to the value of the key (a number times `unit`). It stays as it
+  /// is if there is no such key.
   void Read(const char* key, double& option, const NumberRange& range, double unit = 1.0) const;
   void Read(const char* key, int& option, int least, int most) const;
   void Read(const char* key, bool& option) const;
-  /// The same within the bounds of the keys (bounds.hpp).
+  /// Read within the bounds of the keys (bounds.hpp).
   void ReadBounded(const char* key, double& option, double unit = 1.0) const;
   void ReadBounded(const char* key, int& option) const;
 

@@ -29,7 +29,7 @@ int PriorityClass(ParameterKind kind, ExternalPriority external) {
       return 2;
     case ParameterKind::kRod:
     case ParameterKind::kMotorZero:
-      return 3;  // beside the tree's
+      return 3;  // after the parameters of the tree
     case ParameterKind::kWaistPose:
       return external == ExternalPriority::kFirst ? -2 : 4;
     default:
@@ -37,8 +37,8 @@ int PriorityClass(ParameterKind kind, ExternalPriority external) {
   }
 }
 
-/// Counts the joints that move a marker. A leg that only supports the robot moves none; a joint
-/// that moves all of them shows nothing where the root is free.
+/// Counts the identifiable parameters by the joints that move a marker. A leg that only supports
+/// the robot moves none. With a free root, a joint that moves all markers has no visible effect.
 int TheoreticalCount(const ErrorModel& model, RootPose root) {
   const bool free = root == RootPose::kFree;
   std::map<int, int> moved;  // by joint: markers
@@ -66,8 +66,8 @@ std::vector<int> SortingOrder(const std::vector<int>& values) {
   return order;
 }
 
-/// Keeps all elastic parameters, with nothing regrouped into them: geometry does not decide on
-/// these.
+/// Keeps all elastic parameters, with nothing regrouped into them, because geometry does not decide
+/// on them.
 void KeepElastic(const ErrorModel& model, BaseParameters& base) {
   std::vector<int> kept = base.kept;
   for (int i = 0; i < model.parameter_count(); ++i) {

@@ -11,7 +11,8 @@
 
 namespace elastocal {
 
-/// Which of the redundant parameters stand for the others.
+/// Whether external parameters (T0, marker positions) or joint parameters are kept, where one can
+/// stand for the other.
 enum class ExternalPriority {
   /// T0 and marker positions come before joint parameters: what they can explain is not attributed
   /// to the robot. For a chain, this drops the parameters that the paper holds at zero by hand:
@@ -21,10 +22,10 @@ enum class ExternalPriority {
   kLast,
 };
 
-/// What is known of the root link's pose.
+/// Whether the root link has one pose in all postures.
 enum class RootPose {
-  kConstant,  ///< it is the same in all postures: T0
-  kFree,      ///< it is another one in each posture, and T0 no parameter
+  kConstant,  ///< one unknown pose in all postures: T0
+  kFree,      ///< an unknown pose of its own in each posture; T0 is no parameter
 };
 
 struct IdentifiabilityOptions {
@@ -34,7 +35,7 @@ struct IdentifiabilityOptions {
   double tolerance = 1e-6;
   std::uint64_t seed = 1;
   ExternalPriority external = ExternalPriority::kFirst;
-  RootPose root = RootPose::kConstant;  ///< kFree: at most 300 postures, each costs more
+  RootPose root = RootPose::kConstant;  ///< with kFree, at most 300 postures are used
   /// Name patterns of parameters held at nominal; `*` stands for any run of characters.
   std::vector<std::string> hold = {};
 };
@@ -51,12 +52,13 @@ struct BaseParameters {
   /// kept x dropped: the data determine delta(kept) + regrouping * delta(dropped).
   Eigen::MatrixXd regrouping;
   double smallest_kept = 1.0;    ///< smallest relative remainder among the kept columns
-  double largest_dropped = 0.0;  ///< largest among the dropped ones
+  double largest_dropped = 0.0;  ///< largest relative remainder among the dropped columns
   /// 4 R + 2 P + 3 N_M for R revolute and P prismatic joints that move one of the N_M markers (see
   /// docs/algorithms.md). With a free root 4 R + 2 P + 3 N_M - 6, for joints that move some of the
-  /// markers but not all. It holds if no parameter is held, and does not count elastic ones. A
-  /// lower count with no parameter held means special marker positions, or (with a free root) too
-  /// few markers on a body. The kept ones of linkages are added: there is no theory of these.
+  /// markers but not all. It is valid if no parameter is held, and does not count elastic
+  /// parameters. If fewer are kept and none is held, the marker positions are special, or (with a
+  /// free root) a body has too few markers. The kept parameters of linkages are added to the count,
+  /// because no formula gives theirs.
   int theoretical_count = 0;
 };
 
@@ -73,14 +75,16 @@ std::vector<Share> RegroupedInto(const BaseParameters& base, int dropped);
 /// Factor (see regressor.hpp) of the regressor over random postures at nominal geometry.
 Eigen::MatrixXd NominalFactor(const ErrorModel& model, const IdentifiabilityOptions& options);
 
-/// The same over the postures in the rows of `q`; with a free root the first 300 of them.
+/// Factor of the regressor over the postures in the rows of `q`; with a free root, over the first
+/// 300 of them.
 Eigen::MatrixXd NominalFactor(const ErrorModel& model, const Eigen::MatrixXd& q, RootPose root);
 
 /// Finds the base parameters by QR without pivoting over random postures (section 2.1). Joint
 /// parameters have the paper's priority: theta, then r, d and b, then alpha, beta and gamma.
 BaseParameters FindBaseParameters(const ErrorModel& model, const IdentifiabilityOptions& options);
 
-/// The same from a factor that was computed before: for other holds or another priority.
+/// Finds the base parameters from a factor that NominalFactor returned, for other holds or another
+/// priority.
 BaseParameters FindBaseParameters(const ErrorModel& model, const Eigen::MatrixXd& factor,
                                   const IdentifiabilityOptions& options);
 

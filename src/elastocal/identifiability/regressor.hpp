@@ -22,8 +22,9 @@ Eigen::MatrixXd RegressorFactor(const ErrorModel& model, const Geometry& geometr
                                 const Eigen::MatrixXd& q,
                                 const Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>& seen);
 
-/// The same where the root link has an unknown pose in each posture: of the rows of a posture, what
-/// no displacement of the whole robot explains. The columns of T0 are zero.
+/// The same for a root link that has an unknown pose in each posture. The rows of each posture are
+/// reduced to the part that no displacement of the whole robot explains (RootProjection). The
+/// columns of T0 are zero.
 Eigen::MatrixXd FreeRootFactor(const ErrorModel& model, const Geometry& geometry,
                                const Eigen::MatrixXd& q);
 

@@ -5,13 +5,13 @@
 
 namespace elastocal {
 
-/// What a posture tells where the root link has an unknown pose of its own in it: P psi, where the
-/// rows of psi are those of the posture's markers, and P takes out what displacements of the whole
-/// robot explain.
+/// Projection of the rows of one posture for a root link that has an unknown pose of its own in it:
+/// P psi, where psi has the rows of the posture's markers and P removes what displacements of the
+/// whole robot explain.
 class RootProjection {
  public:
-  /// `root`: how the rows change with the pose of the root link (six columns). They may be
-  /// dependent, as two markers do not show a rotation about their line.
+  /// `root` is the matrix G of derivatives of the rows by the pose of the root link (six columns).
+  /// Its columns may be dependent: two markers do not show a rotation about their line.
   explicit RootProjection(const Eigen::MatrixXd& root);
 
   /// P psi = psi - G G^+ psi with the columns G of the root link.
@@ -21,7 +21,7 @@ class RootProjection {
   struct Weights {
     Eigen::MatrixXd psi, root;
   };
-  /// Weights with which derivatives of psi and G give that of P psi: sum(weight .* d(P psi)) =
+  /// Derivative of sum(weight .* P psi), expressed by those of psi and G: sum(weight .* d(P psi)) =
   /// sum(result.psi .* dpsi) + sum(result.root .* dG), as long as the rank of G stays the same.
   Weights Derivative(const Eigen::MatrixXd& psi, const Eigen::MatrixXd& weight) const;
 

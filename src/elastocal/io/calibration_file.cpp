@@ -77,7 +77,7 @@ void EmitMarkers(const ErrorModel& model, YAML::Emitter& yaml) {
   yaml << YAML::EndSeq;
 }
 
-/// Waist and markers alone, fitted to the same recording.
+/// Writes waist and markers of the uncalibrated robot, fitted to the same recording.
 void EmitUncalibrated(const CalibrationResult& result, YAML::Emitter& yaml) {
   yaml << YAML::Key << "uncalibrated" << YAML::Value << YAML::BeginMap;
   for (int i = 0; i < result.model.parameter_count(); ++i) {
@@ -88,7 +88,7 @@ void EmitUncalibrated(const CalibrationResult& result, YAML::Emitter& yaml) {
   yaml << YAML::EndMap;
 }
 
-/// What the calibrated URDF has, of another model.
+/// Writes the errors in the calibrated URDF, if they are those of another model.
 void EmitInUrdf(const CalibrationResult& result, YAML::Emitter& yaml) {
   yaml << YAML::Key << "urdf" << YAML::Value << YAML::BeginMap;
   yaml << YAML::Key << "model" << YAML::Value << ModelKindName(result.kind)
@@ -348,7 +348,7 @@ StoredCalibration AsInUrdf(StoredCalibration stored) {
 void CheckParameters(const StoredCalibration& stored, const ErrorModel& model,
                      const std::vector<std::string>& chains) {
   std::set<std::string> owners(chains.begin(), chains.end());
-  owners.insert({"waist", "gravity"});  // of corrections
+  owners.insert({"waist", "gravity"});  // they have corrections
   for (const Link& link : model.tree.links) owners.insert(link.name);
   for (const Joint& joint : model.tree.joints) owners.insert(joint.name);
   for (const Linkage& linkage : model.tree.linkages) {

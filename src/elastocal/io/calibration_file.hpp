@@ -21,16 +21,16 @@ struct HeldOutErrors {
   double compensated = 0.0;  ///< by the calibrated model, with elasticity
 };
 
-/// What a calibration.yaml has beside its result.
+/// What a calibration.yaml holds in addition to its result.
 struct BesideCalibration {
   /// The result that has only waist and markers fitted to the same recording, for a comparison on
   /// other recordings.
   const CalibrationResult* uncalibrated = nullptr;
-  /// The result whose geometry the calibrated URDF has, where that is another (a rigid model that
-  /// predicts better by itself than without the other's elasticity).
+  /// The result whose geometry the calibrated URDF has, if that is another one: a rigid model that
+  /// predicts better than the geometry of the elastic model alone. Null: the same result.
   const CalibrationResult* in_urdf = nullptr;
-  Eigen::Vector3d gravity = kGravity;  ///< in the frame of the recording, a table of postures
-  /// What the result leaves of its own markers, outliers included, m; 0: not known.
+  Eigen::Vector3d gravity = kGravity;  ///< posture table: gravity in its frame, m/s^2
+  /// 3-D RMSE of the result on its own markers, outliers included, m; 0: not known.
   double rmse_3d = 0.0;
   HeldOutErrors held_out = {};
   std::vector<SoleSpring> soles = {};
@@ -41,7 +41,7 @@ struct BesideCalibration {
 std::string MakeCalibrationYaml(const CalibrationResult& result, const std::string& recording,
                                 ZeroOffsets zero_offsets, const BesideCalibration& beside = {});
 
-/// The same of what is known of a robot without a recording of its own, such as a fleet's prior.
+/// The same file for a robot without a recording of its own, such as a fleet's prior.
 std::string MakeCalibrationYaml(const CalibrationEstimate& estimate);
 
 /// Reads all of a calibration.yaml that a comparison needs; the covariance is in another file.
@@ -52,41 +52,43 @@ CalibrationEstimate ReadEstimate(const std::filesystem::path& file);
 /// The same from the text of a file; `source` names it in messages.
 CalibrationEstimate ParseEstimate(const std::string& text, const std::string& source);
 
-/// What another run needs of such a file.
+/// The contents of a calibration.yaml that another run needs.
 struct StoredCalibration {
   std::string source;       ///< the file, for messages
   std::string fingerprint;  ///< CalibrationFingerprint of its text
   std::string robot;
-  std::string nominal;  ///< NominalFingerprint of the robot that the errors are deviations from
+  std::string nominal;  ///< NominalFingerprint of the robot to which the errors refer
   std::string recording;
-  double rmse_3d = 0.0;    ///< what it left of its own markers, m; 0: the file is silent
-  HeldOutErrors held_out;  ///< what it predicted of other recordings
-  /// Scatter of a marker's coordinate between postures, of as many independent ones as would tell
-  /// as much as these postures do, m; 0: the file is silent.
+  double rmse_3d = 0.0;    ///< 3-D RMSE on its own markers, m; 0: the file does not say
+  HeldOutErrors held_out;  ///< errors on markers that it did not use
+  /// Standard deviation of a marker coordinate that independent postures would have, if they told
+  /// as much as these postures do, m; 0: the file does not say.
   double scatter_sd = 0.0;
   std::map<std::string, double> joint_errors;  ///< by parameter name, SI
-  /// The errors that the calibrated URDF has, where they are others; else empty.
+  /// The errors that the calibrated URDF has, if they are others; else empty.
   std::map<std::string, double> urdf_errors;
-  std::vector<SoleSpring> soles;  ///< of the feet that a load told anything of
-  /// Of a table of postures: nominal pose of the waist in the frame of the recording.
+  std::vector<SoleSpring> soles;  ///< springs of the feet whose springs the loads tell
+  /// Posture table: nominal pose of the waist in the frame of the recording.
   std::optional<Transform> T_ref_waist;
   Eigen::Vector3d gravity = kGravity;  ///< in that frame, m/s^2
-  /// Waist (deviations from there) and markers, by parameter name, SI: of the calibrated model, and
-  /// of the uncalibrated one fitted to the same recording (empty if the file does not have it).
+  /// Waist (deviations from `T_ref_waist`) and markers, by parameter name, SI: of the calibrated
+  /// model, and of the uncalibrated one fitted to the same recording (empty if the file does not
+  /// have it).
   std::map<std::string, double> externals, uncalibrated_externals;
-  std::map<std::string, int> lines;  ///< of the file, by parameter name
+  std::map<std::string, int> lines;  ///< line of each parameter in the file, by parameter name
 };
 
 /// Reads a calibration.yaml. Throws InputError naming file, line and key.
 StoredCalibration ReadCalibration(const std::filesystem::path& file);
 
-/// The same robot as the calibrated URDF has it: with the errors of the model that predicts best
-/// without elasticity, and compliances of zero where that is another model.
+/// The calibration as the calibrated URDF has it: if the file has errors for the URDF
+/// (StoredCalibration::urdf_errors), these replace the joint errors, and parameters that they lack
+/// (compliances among them) become zero. Otherwise the calibration is unchanged.
 StoredCalibration AsInUrdf(StoredCalibration stored);
 
-/// Throws InputError naming the line where the calibration has a parameter of a joint or chain that
-/// is neither the model's nor one of `chains`, and where a joint lacks some of its parameters of
-/// geometry. The model has all markers of the project.
+/// Throws InputError, naming the line, for a parameter of a joint or chain that neither the model
+/// nor `chains` has, and for a joint that lacks some of its geometric parameters. The model must
+/// have all markers of the project.
 void CheckParameters(const StoredCalibration& stored, const ErrorModel& model,
                      const std::vector<std::string>& chains);
 

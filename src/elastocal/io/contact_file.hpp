@@ -12,12 +12,13 @@
 namespace elastocal {
 
 /// The section `contact` of calibration.yaml (docs/formats.md): where the feet stand, quantities
-/// beside the robot (tilts of plates, planes of tables, mountings, trackers), standard deviations
-/// of all sources; then the last two of the uncalibrated robot.
+/// other than those of the robot (tilts of plates, planes of tables, mountings, trackers), standard
+/// deviations of all sources; then these quantities and standard deviations for the uncalibrated
+/// robot.
 std::string MakeContactYaml(const ObservedRobot& model, const ObservationFit& calibrated,
                             const ObservationFit& uncalibrated);
 
-/// Quantities by name, and what varies, by source of the project's setup.
+/// Quantities by name, and the standard deviations of the sources of the project's setup.
 struct StoredContact {
   std::map<std::string, QuantityValue> quantities;
   Spread spread;

@@ -12,7 +12,7 @@ namespace elastocal {
 /// covariance.csv: covariance of the estimated and unsupported parameters together, rad and m, with
 /// their names as header row and first column.
 std::string MakeCovarianceCsv(const CalibrationResult& result);
-/// The same of a covariance by its names.
+/// The same file for any covariance; `names` are those of its rows and columns.
 std::string MakeCovarianceCsv(const std::vector<std::string>& names,
                               const Eigen::MatrixXd& covariance);
 

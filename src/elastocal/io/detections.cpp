@@ -33,7 +33,7 @@ std::vector<int> FindDetectionColumns(const Table& table, bool several_cameras) 
   return columns;
 }
 
-/// What a cell names among `known`.
+/// Index of the item of `known` that a cell names.
 std::string NameIn(const Table& table, int column, const char* what,
                    const std::set<std::string>& known) {
   const std::string name(table.Cell(column));

@@ -14,9 +14,9 @@ namespace elastocal {
 /// A tag that a camera saw in a frame.
 struct Detection {
   std::string frame;
-  int instrument = 0;      ///< of the project's setup
+  int instrument = 0;      ///< index into the instruments of the project's setup
   Eigen::VectorXd pixels;  ///< as SeenTag measures
-  int line = 0;            ///< of its first corner
+  int line = 0;            ///< line of its first corner in the file
 };
 
 /// Whether a table has the columns `tag` and `corner`.

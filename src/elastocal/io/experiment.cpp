@@ -51,7 +51,8 @@ std::vector<int> ReadChains(const YamlValue& trial, const Project& project) {
   return chains;
 }
 
-/// Feet are where chains end: only there is known what carries the robot.
+/// Reads the supports. A support must be the tip of a chain, because only there the joints that
+/// carry the robot are known.
 void ReadSupport(const YamlValue& value, const Project& project, TrialFiles& trial) {
   if (value.IsScalar() && value.Text() == "free") {
     trial.free_root = true;

@@ -14,32 +14,32 @@ namespace elastocal {
 
 /// As experiment.yaml has it: "calibration", "sine", "random", "repeatability".
 std::string TrialKindName(TrialKind kind);
-/// The kind of that name; nothing where there is none.
+/// The kind with this name; nothing for an unknown name.
 std::optional<TrialKind> TrialKindNamed(const std::string& name);
 
 /// One motion as it was recorded, by cameras and robot.
 struct TrialFiles {
   std::string name;
   TrialKind kind = TrialKind::kCalibration;
-  std::vector<int> chains;  ///< that it exercises, of Project::chains; one or more
+  std::vector<int> chains;  ///< chains that it exercises, indices into Project::chains; one or more
   std::vector<int>
-      support;  ///< links that stand on the floor, of the tree; empty: the root is held ...
-  bool free_root = false;  ///< ... unless it is free
+      support;  ///< links of the tree that stand on the floor; empty: the root is held or free
+  bool free_root = false;  ///< whether the root is free (`support` is then empty)
   bool moments = false;    ///< samples are moments of the motion (of a sine they always are)
-  /// Of cameras and robot, in any format that is read; the same file where a bag has both.
+  /// Files of cameras and robot, in any format that is read; the same file if a bag has both.
   std::filesystem::path markers, joints;
   ReaderOptions reading = {};  ///< what these files do not say by themselves
-  /// Camera time less robot time at the beginning, s, where it is known.
+  /// Camera time less robot time at the beginning, s, if it is known.
   std::optional<double> expected_lag_s = {};
   std::filesystem::path truth = {};  ///< of a simulated trial, see ReadWaistTruth; empty: unknown
-  int session = 0;                   ///< which of several folders it is from
+  int session = 0;                   ///< number of the folder that it is from
 };
 
 /// The contents of a recording folder.
 struct Experiment {
   std::vector<TrialFiles> trials;            ///< one or more, names and files all different
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< in the cameras' frame, m/s^2
-  bool up_given = false;  ///< whether the user says which axis points up; else files may
+  bool up_given = false;  ///< whether the user says which axis points up; if not, files may
 };
 
 /// Reads `folder`/experiment.yaml (docs/formats.md). Files in it are seen from the folder and must

@@ -14,8 +14,8 @@ namespace elastocal {
 /// visuals, comments and markers do not count.
 std::string NominalFingerprint(const ErrorModel& model);
 
-/// A number for the text of a calibration.yaml. What is measured or studied with a calibration
-/// names it by that, and is not shown beside another one.
+/// A fingerprint of the text of a calibration.yaml. Results that are made with a calibration hold
+/// its fingerprint, so that they are not shown together with another one.
 std::string CalibrationFingerprint(std::string_view text);
 
 }  // namespace elastocal

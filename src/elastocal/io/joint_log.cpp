@@ -40,8 +40,8 @@ struct JointColumns {
   std::vector<int> wrenches;   ///< six columns of each of these: fx, ..., tz
 };
 
-/// What names mean: quantity 0 is the time; 1 + k and 1 + joints + k are position and torque of
-/// joint k; the six of each force-torque sensor follow.
+/// Meaning of the column names: quantity 0 is the time, 1 + k the position and 1 + joints + k the
+/// torque of joint k; the six of each force-torque sensor follow.
 ColumnRoles LogRoles(const Table& table, const Project& project) {
   const std::vector<Joint>& joints = project.tree.joints;
   const auto count = static_cast<int>(joints.size());
@@ -51,7 +51,7 @@ ColumnRoles LogRoles(const Table& table, const Project& project) {
   for (int k = 0; k < count; ++k) {
     AddRole(project, JointColumn(project, joints[k].name), role(k, 1 + k), roles);
   }
-  // Where one of these is the name of another joint, it is that joint.
+  // A name that is also that of a joint means this joint.
   roles.emplace("time", 0);
   const auto in_seconds = [&](const std::string& column) {
     return column == project.recording.time || column == "time";
@@ -138,8 +138,8 @@ void CheckTorques(const Eigen::Ref<const Eigen::VectorXd>& torques, const std::s
 }
 
 /// Reads the numbers of all rows: time, positions, torques and wrenches of the log. Rows without
-/// any position above the first one that has some are passed over: loggers write them until the
-/// robot answers. Gives the line of the first sample.
+/// any position at the beginning are passed over, because loggers write them until the robot
+/// answers. Returns the line of the first sample.
 int ReadNumbers(const JointColumns& columns, const std::string& time_unit, Table& table,
                 JointLog& log) {
   std::vector<double> time, positions, torques, wrenches;
@@ -179,7 +179,7 @@ int ReadNumbers(const JointColumns& columns, const std::string& time_unit, Table
   return first_line;
 }
 
-/// The log of joints, or of motors where the project names these.
+/// The log of joints, or of motors if the project names these (WithMotors).
 JointLog ReadColumns(Table& table, const Project& project, const std::string& time_unit) {
   const std::string& source = table.source();
   const JointColumns columns = FindJointColumns(table, project);

@@ -10,14 +10,18 @@
 
 namespace elastocal {
 
-/// Reads a log of joint positions and torques (docs/formats.md): CSV with a header row; a column of
-/// the time in s, `t` or `time` or as the project names it, or
-/// in the unit at the end of its name (`time_ns`) or in `time_unit`; for each joint `JOINT` or
-/// `JOINT_position` in rad or m and, where it has a sensor, `JOINT_torque` or `JOINT_effort` in N.m
-/// or N, JOINT being the joint's name or its column in the project; for each force-torque sensor of
-/// the project none or six, `NAME_fx` to `NAME_tz`, in N and N.m. Velocities, mimic joints and
-/// what the project ignores are passed over. A joint without a torque column, or with one that is
-/// empty or NaN from the first to the last row, has NaN torques.
+/// Reads a log of joint positions and torques (docs/formats.md), a CSV with a header row and these
+/// columns:
+/// - time in s: `t`, `time` or the name that the project gives; or time in the unit at the end of
+///   its name (`time_ns`) or in `time_unit`;
+/// - positions of each joint, `JOINT` or `JOINT_position`, in rad or m, where JOINT is the joint's
+///   name or its column in the project;
+/// - torques of joints with a sensor, `JOINT_torque` or `JOINT_effort`, in N.m or N;
+/// - for each force-torque sensor of the project none or all of `NAME_fx` to `NAME_tz`, in N and
+///   N.m.
+/// Velocities, mimic joints and columns that the project ignores are passed over. A joint without a
+/// torque column, or with one that is empty or NaN in all rows, has NaN torques.
+///
 /// Throws InputError naming file, line and column: unknown columns (with the nearest known one),
 /// text or NaN where a number belongs, time that does not increase, no rows, more than a million,
 /// positions that look like degrees.

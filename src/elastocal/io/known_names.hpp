@@ -7,7 +7,8 @@
 
 namespace elastocal {
 
-/// DidYouMean of a cell of a table; where no candidate is near, some of them: "; known: left".
+/// DidYouMean for a cell of a table. If no candidate is near, it lists up to eight candidates:
+/// "; known: left".
 template <typename Names>
 std::string Known(const std::string& name, const Names& candidates) {
   constexpr int kMostNames = 8;

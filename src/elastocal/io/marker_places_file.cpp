@@ -37,7 +37,8 @@ const Marker& MarkerOf(const Table& table, int column, const Project& project) {
   table.FailCell(column, "there is no marker " + Quote(name.substr(0, 60)) + Known(name, names));
 }
 
-/// From the frame of the link that a row names to that of the marker's link; they are one body.
+/// Transform from the frame of the link that a row names to that of the marker's link; both links
+/// must be on one body.
 Transform FromNamedLink(const Table& table, int column, const Marker& marker,
                         const Project& project) {
   if (column < 0 || table.Cell(column).empty()) return Transform::Identity();
@@ -58,7 +59,7 @@ Transform FromNamedLink(const Table& table, int column, const Marker& marker,
   return own.T_body_link.inverse() * found->T_body_link;
 }
 
-/// Places in m would all be beside the origin of their links, and project files have mm.
+/// Refuses places in m: read as mm, they would all be near the origins of their links.
 void CheckUnit(const std::vector<MarkerMeasurement>& places, const Project& project,
                const std::string& source) {
   constexpr double kSmall = 2e-3, kNominal = 2e-2;  // m

@@ -12,10 +12,10 @@
 namespace elastocal {
 namespace {
 
-constexpr double kUnit = 1e-3;          // that a quaternion may be off
-constexpr double kGravityShare = 0.05;  // that an accelerometer may be off
+constexpr double kUnit = 1e-3;          // largest error of a quaternion's length
+constexpr double kGravityShare = 0.05;  // largest relative error of an accelerometer
 constexpr double kFarthest = 100.0;     // m: a large hall
-constexpr double kNearZero = 0.1;       // m: more than any zero is off
+constexpr double kNearZero = 0.1;       // m: larger than the error of any zero
 
 void CheckMetres(const Table& table, const Instrument& instrument, const std::vector<int>& columns,
                  const Eigen::VectorXd& measured, int count) {
@@ -28,7 +28,7 @@ void CheckMetres(const Table& table, const Instrument& instrument, const std::ve
   }
 }
 
-/// A wire's length is over an unknown zero of some millimetres.
+/// Checks the length of a wire, whose zero is unknown by some millimetres.
 void CheckLengthOfWire(const Table& table, int column, double length) {
   if (length >= -kNearZero) return;
   table.FailCell(column, fmt::format("{:g} m is no length of a wire; does the column have the "

@@ -18,7 +18,7 @@ namespace {
 /// Half an hour at 100 Hz; this bounds the memory that a file can take.
 constexpr double kLongestMotion = 3600.0;  // s
 constexpr int kMostSamples = 200000;
-constexpr double kSpeedMargin = 1.05;  // samples are rounded
+constexpr double kSpeedMargin = 1.05;  // margin of speeds, because samples are rounded
 
 /// Which column of a motion or a list of postures holds what; -1 where there is none.
 struct MotionColumns {
@@ -26,7 +26,7 @@ struct MotionColumns {
   std::vector<int> coordinates;  ///< by coordinate of the tree
 };
 
-/// `timed`: of a motion, whose column of time is read and which has no markers.
+/// Finds the columns. `timed`: the table is a motion, whose time is read and which has no markers.
 MotionColumns FindMotionColumns(const Table& table, const Project& project, bool timed) {
   constexpr int kTime = 0, kSupport = 1, kCoordinates = 2;
   if (timed && table.header().front().starts_with("robot:")) {
@@ -67,8 +67,8 @@ MotionColumns FindMotionColumns(const Table& table, const Project& project, bool
 
 using LinksByName = std::map<std::string, std::vector<int>, std::less<>>;
 
-/// What may stand in the column `support`: the tip of a chain, `none`, and `both` feet of a robot
-/// with two legs.
+/// Values of the column `support`: the tip of a chain, `none`, and `both` (feet of a robot with two
+/// legs).
 LinksByName FindSupports(const Project& project) {
   LinksByName supports;
   std::vector<NamedChain> chains;
@@ -108,8 +108,7 @@ std::vector<int> ReadSupport(const Table& table, int column, const LinksByName& 
   return links;
 }
 
-/// A robot can be told only what it can do: throws InputError for degrees and for positions and
-/// speeds beyond the joint's limits.
+/// Throws InputError for degrees, and for positions and speeds beyond the joint's limits.
 void CheckJoint(const JointMotion& motion, int coordinate, const Joint& joint,
                 const std::string& column) {
   const auto place = [&](Eigen::Index row) { return Place(motion.source, motion.line[row]); };

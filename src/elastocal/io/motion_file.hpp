@@ -24,8 +24,8 @@ JointMotion ReadMotion(const std::filesystem::path& file, const Project& project
 /// The same from a stream; `source` names it in messages.
 JointMotion ReadMotion(std::istream& stream, const std::string& source, const Project& project);
 
-/// Reads a list of postures: the same without time. A posture table serves, with or without its
-/// markers: columns of time and of the project's markers are passed over as well.
+/// Reads a list of postures: a table like a motion, but without time. A posture table can be read
+/// as well; its columns of time and of the project's markers are passed over.
 JointMotion ReadPostureList(const std::filesystem::path& file, const Project& project);
 JointMotion ReadPostureList(std::istream& stream, const std::string& source,
                             const Project& project);

@@ -22,7 +22,7 @@ bool HasColumn(const std::vector<std::string>& columns, const std::string& motor
   });
 }
 
-/// Lets the joints of a linkage be called as its motors.
+/// Gives the joints of a linkage the names of its motors.
 void NameAsMotors(const Linkage& linkage, Project& project) {
   for (std::size_t i = 0; i < linkage.rods.size(); ++i) {
     Joint& joint = project.tree.joints[static_cast<std::size_t>(linkage.joints[i])];
@@ -34,7 +34,7 @@ void NameAsMotors(const Linkage& linkage, Project& project) {
   }
 }
 
-/// From a start nearby or, where that fails, from where the linkage was put together.
+/// Closes a linkage from a start nearby or, if that fails, from Linkage::assembled.
 std::optional<Closure> CloseNear(const RobotTree& tree, const Linkage& linkage,
                                  const Eigen::VectorXd& motors, const Eigen::VectorXd& start) {
   constexpr double kSame = 1e-6;  // rad or m
@@ -48,7 +48,7 @@ std::optional<Closure> CloseNear(const RobotTree& tree, const Linkage& linkage,
   return CloseLinkage(tree, linkage, motors, {}, *positions);
 }
 
-/// Columns of the log by the names; nothing where one is missing.
+/// The columns of the log with these names; nothing if one is missing.
 std::optional<std::vector<int>> ColumnsOf(const std::vector<std::string>& names,
                                           const JointLog& log) {
   std::vector<int> columns;
@@ -71,7 +71,8 @@ bool ClosesInAll(const RobotTree& tree, const Linkage& linkage, const Eigen::Mat
   return true;
 }
 
-/// "with the sign of 'a' reversed, or with 'a' and 'b' exchanged"; empty where nothing helps.
+/// Changes of the motors' columns with which the loops close: "with the sign of 'a' reversed, or
+/// with 'a' and 'b' exchanged"; empty if none helps.
 std::string WhatWouldClose(const RobotTree& tree, const Linkage& linkage,
                            const Eigen::MatrixXd& motors, Eigen::Index failed) {
   std::string found;

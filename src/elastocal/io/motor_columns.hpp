@@ -14,16 +14,16 @@ namespace elastocal {
 /// Tables and logs of a robot with linkages hold the columns of the motors. Everywhere else the
 /// joints are where the nominal rods put them for these (see Linkage).
 
-/// The project as a file sees it that has these columns: joints of linkages have the names of their
-/// motors where the file has columns of these, and the joints' own columns are passed over. A file
-/// without any motor of a linkage holds the positions of its joints, which the robot's controller
-/// has from the nominal rods. Throws InputError naming `source` where some motors of a linkage have
-/// columns and others have none.
+/// The project for reading a file with these columns. If the file has columns of a linkage's
+/// motors, the joints of the linkage get the names of their motors, and the joints' own columns are
+/// passed over. A file without any motor of a linkage holds the positions of its joints, which the
+/// robot's controller computes by the nominal rods. Throws InputError naming `source` if only some
+/// motors of a linkage have columns.
 Project WithMotors(const Project& project, const std::vector<std::string>& columns,
                    const std::string& source);
 
-/// " (or those of its motors 'a', 'b')" for a joint of a linkage, about columns that are missing;
-/// empty for others.
+/// End of a message about missing columns of a joint of a linkage: " (or those of its motors 'a',
+/// 'b')"; empty for other joints.
 std::string OrItsMotors(const RobotTree& tree, int joint);
 
 /// Replaces positions of motors [rad; actuators m] by those of the joints: `columns[i]` is that of
@@ -34,21 +34,23 @@ Eigen::Index MotorsToJoints(const RobotTree& tree, const Linkage& linkage,
                             const std::vector<int>& columns, Eigen::MatrixXd& table,
                             std::vector<Eigen::MatrixXd>* by_motors = nullptr);
 
-/// "motor 'a' at 3 rad and motor 'b' at 0.1 rad: the rods of linkage 'l' do not reach there ...",
-/// about the row `failed` of positions of the linkage's motors, and which sign, exchange or unit
-/// would let the loops close in it and in the others (of many, a hundred evenly spread).
+/// A message about row `failed` of positions of a linkage's motors, in which the loops do not
+/// close: "motor 'a' at 3 rad and motor 'b' at 0.1 rad: the rods of linkage 'l' do not reach there
+/// ...". It names the reversed sign, exchange or unit with which the loops would close in this row
+/// and in up to about a hundred others, evenly spread.
 std::string CannotClose(const RobotTree& tree, const Linkage& linkage,
                         const Eigen::MatrixXd& motors, Eigen::Index failed);
 
-/// The log of motors as that of the joints; torques by the virtual work: those of the joints have
-/// the power of those of the motors. A joint has no torque where one of its motors has none. Throws
-/// InputError where loops do not close.
+/// Replaces motors in a log by the joints that they move. Torques follow from virtual work: those
+/// of the joints have the same power as those of the motors. A joint has no torque (NaN) if a motor
+/// of its linkage has none. Throws InputError if loops do not close.
 void MotorsToJoints(const RobotTree& tree, JointLog& log);
 
-/// The other way, for files that are written. Throws InputError where a rod does not reach.
+/// Inverse of MotorsToJoints, for files that are written. Throws InputError if a rod does not
+/// reach.
 JointLog JointsToMotors(const RobotTree& tree, JointLog log);
 
-/// The same of postures `q`, one a row, of which the joints `absent` are not written. Returns the
+/// The same for postures `q`, one in each row; the joints `absent` are not written. Returns the
 /// tree with motors in the place of joints.
 RobotTree JointsToMotors(const RobotTree& tree, const std::vector<std::string>& absent,
                          Eigen::MatrixXd& q);

@@ -22,7 +22,7 @@ struct PostureTableColumns {
   int time = -1;
 };
 
-/// Names what the columns hold; nothing without a marker.
+/// Finds the columns by their names and fills `postures`; nothing without a marker.
 std::optional<PostureTableColumns> NameColumns(const Table& table, NamedPostures& postures) {
   const std::vector<std::string>& header = table.header();
   PostureTableColumns columns;
@@ -49,13 +49,13 @@ std::optional<PostureTableColumns> NameColumns(const Table& table, NamedPostures
   return columns;
 }
 
-/// Whether times are those of a log and not of postures that are held.
+/// Whether times are those of samples, and not of postures that are held.
 bool AreSamples(const std::vector<double>& time) {
   constexpr double kLongest = 0.1;  // s between samples
   return time.size() > 1 && MedianInterval(time) < kLongest;
 }
 
-/// Why a table is no joint log; empty where it is one.
+/// Why a table is no joint log; empty if it may be one.
 std::string WhyNoLog(const ByteSource& source, const std::string& time_unit) {
   SourceStream stream(source);
   Table table(stream, source.name());

@@ -11,22 +11,22 @@
 
 namespace elastocal {
 
-/// A table with a header row whose columns are a posture table's by their names, without a project:
-/// NAME_x, NAME_y and NAME_z of one marker or more; every other column but `t` and `time` is a
-/// joint's. Nothing for another header, and for rows that follow each other by less than 0.1 s
-/// (median): they are samples of joints with such names. Throws InputError where Table does.
+/// Recognises a posture table by its column names, without a project: it has NAME_x, NAME_y and
+/// NAME_z of at least one marker, and every other column but `t` and `time` is that of a joint.
+/// Returns nothing for another header, and if rows follow each other by less than 0.1 s (median):
+/// these are samples of joints with such names. Throws InputError like Table.
 std::optional<NamedPostures> ReadNamedPostures(const ByteSource& source);
 
-/// A table with a header row whose names nobody knows without its project (touches, poses, corners
-/// of tags, markers of other names): what its columns hold, and `why` it is no joint log. Nothing
-/// where a column is the time of samples (MayBeSamples, or there is a unit of time, by its name or
-/// given), and for one column alone.
-/// Throws InputError where Table does.
+/// Describes the columns of a table whose names are known only with its project (touches, poses,
+/// corners of tags, markers of other names). `why` gets the reason why it is no joint log. Returns
+/// nothing if it may be a joint log: a column is the time, and it has a unit (in its name or by
+/// `time_unit`) or its values may be samples (MayBeSamples). Returns nothing also for a table of
+/// one column. Throws InputError like Table.
 std::optional<NamedPostures> ReadColumnsAsTheyAre(const ByteSource& source,
                                                   const std::string& time_unit, std::string& why);
 
-/// The column of the time among those of a CSV: `t`, else `time`, else one of these with the unit
-/// at its end (TimeUnitOfName); the number of columns where there is none.
+/// Index of the time column of a CSV: `t`, else `time`, else the first name that TimeUnitOfName
+/// knows (`time_ns`). Without one, the number of columns.
 std::ptrdiff_t FindTime(const std::vector<std::string>& header);
 
 }  // namespace elastocal

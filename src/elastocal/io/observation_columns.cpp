@@ -54,8 +54,8 @@ int FindSessionColumn(const Table& table, const std::string& column, const Proje
   return static_cast<int>(found - table.header().begin());
 }
 
-/// Gives the columns of instruments a meaning; returns the first quantity of each, which follow
-/// each other.
+/// Adds the columns of instruments to the roles. Returns the first quantity of each instrument; its
+/// other quantities follow.
 std::vector<int> AddInstrumentRoles(const Project& project, int& quantities, ColumnRoles& roles) {
   std::vector<int> first;
   for (const std::vector<std::string>& columns : project.contact->columns) {
@@ -65,7 +65,7 @@ std::vector<int> AddInstrumentRoles(const Project& project, int& quantities, Col
   return first;
 }
 
-/// The columns of an instrument in a table; empty where it has none.
+/// The columns of an instrument in a table; empty if it has none.
 std::vector<int> InstrumentColumns(const Table& table, const Project& project,
                                    std::size_t instrument, std::span<const int> found) {
   const std::vector<std::string>& names = project.contact->columns[instrument];

@@ -9,21 +9,21 @@
 
 namespace elastocal {
 
-/// Where a table of observations has what is read from it: numbers of columns, -1 where it has
-/// none.
+/// Columns of a table of observations, as indices; -1: there is none.
 struct ObservationColumns {
   std::vector<int> coordinates;  // by coordinate of the robot
-  std::vector<int> sessions;     // all are there
-  std::vector<int> ignored;      // that the project names in recording.ignore
+  std::vector<int> sessions;     // one for each of SessionRule::columns
+  std::vector<int> ignored;      // columns that the project names in recording.ignore
   int plate = -1, frame = -1;
-  std::vector<std::vector<int>> instruments;  // of plates, and of those that are absent: empty
+  std::vector<std::vector<int>> instruments;  // by instrument; empty: plates, absent ones
 
-  /// Whether an instrument shows something in it.
+  /// Whether the table has measurements of an instrument other than a plate.
   bool measures() const;
 };
 
-/// Throws InputError for a column that is unknown, for part of an instrument's columns, and for a
-/// joint that moves a foot or what is observed and is not known.
+/// Finds the columns. Throws InputError for an unknown column, for an instrument with only some of
+/// its columns, and for a joint that moves a foot or what is observed and has neither a column nor
+/// a position in the project.
 ObservationColumns FindObservationColumns(const Table& table, const Project& project);
 
 }  // namespace elastocal

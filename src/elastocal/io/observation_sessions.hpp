@@ -12,26 +12,28 @@
 
 namespace elastocal {
 
-/// What tells the sessions of a table of observations, taken row by row.
+/// Finds the session of each row of a table of observations.
 class SessionReader {
  public:
   /// Keeps references.
   SessionReader(const Table& table, const ObservationColumns& columns, const Project& project)
       : table_(table), columns_(columns), project_(project) {}
 
-  /// Takes the row read last. Throws InputError for what is no number of steps of
+  /// Takes the row read last. Throws InputError for a cell that is no number of steps of
   /// contact.sessions.counts.quantum, and for a row without the name of its session.
   void Take();
 
-  /// The session of each row, by a name that no other file has where the project does not say
-  /// otherwise: the file, or the start of the robot in it that the encoders tell. `q`: positions of
-  /// all rows. Adds to `warnings` what the encoders tell; where the project does not ask them, as a
-  /// proposal.
+  /// Name of the session of each row. If the project has columns for sessions, these name it.
+  /// Otherwise it is the file, or if the project says so (SessionRule::from_encoders), the start of
+  /// the robot in the file that the encoders tell; no other file has this name. `q` has the
+  /// positions of all rows. Adds to `warnings` what the encoders tell; if the project does not say
+  /// whether to use them, this is a proposal.
   std::vector<std::string> Sessions(const Eigen::MatrixXd& q,
                                     std::vector<std::string>& warnings) const;
 
  private:
-  /// Names of sessions that one row alone has, and that are near to others: mistyped.
+  /// Warns of names of sessions that only one row has and that are similar to others: they may be
+  /// mistyped.
   void WarnOfLoneSessions(std::vector<std::string>& warnings) const;
   std::vector<std::string> ByEncoders(const Eigen::MatrixXd& q,
                                       std::vector<std::string>& warnings) const;

@@ -25,7 +25,7 @@ namespace {
 
 constexpr int kMostRows = 20000;
 
-/// What an instrument showed in a row.
+/// Measurement of an instrument in one row.
 struct MeasuredRow {
   int row = 0, instrument = 0;
   Eigen::VectorXd measured;
@@ -36,8 +36,8 @@ struct ObservationFile {
   Recording postures;                 // no markers
   std::vector<std::string> sessions;  // by row
   std::vector<std::string> warnings;
-  std::vector<std::string> plates;  // by row, where there is a column for them
-  std::vector<std::string> frames;  // likewise for images
+  std::vector<std::string> plates;  // by row; empty without a column of plates
+  std::vector<std::string> frames;  // names of images by row; empty without a column
   std::vector<MeasuredRow> measured;
 };
 
@@ -88,7 +88,7 @@ ObservationFile ReadObservationFile(const std::filesystem::path& file, const Pro
   return result;
 }
 
-/// The plate that touches in each row, as its column says; -1: none.
+/// The plate that touches in each row, by the plate column; -1: none.
 std::vector<int> NamedPlates(const ObservationFile& file, const ObservationSetup& setup) {
   std::vector<std::string> names;
   for (const ContactPlate& plate : setup.plates) names.push_back(plate.name);
@@ -108,7 +108,8 @@ std::vector<int> NamedPlates(const ObservationFile& file, const ObservationSetup
   return plates;
 }
 
-/// The same as it lies, in rows in which no instrument shows anything.
+/// The plate that touches in each row: by the plate column or, if the project has none, the plate
+/// that lies flattest in rows in which no instrument shows anything; -1: none.
 std::vector<int> PlatesOf(const ObservationFile& file, const Project& project,
                           const ObservationSetup& setup) {
   if (!file.plates.empty()) {
@@ -165,8 +166,9 @@ class ObservationCollector {
   std::map<std::pair<int, std::string>, int> sessions_;
 };
 
-/// By row, what tells how often trackers and wires were set up: nobody moves them when the robot is
-/// started anew, so that it is the file, unless the project tells sessions by a column.
+/// For each row, the name of the set-up of trackers and wires. It is the file, because nobody moves
+/// them when the robot is started anew; if the project tells sessions by columns of texts, it is
+/// the session.
 std::vector<std::string> SetUps(const ObservationFile& file, const Project& project) {
   const SessionRule& rule = project.contact->sessions;
   if (!rule.columns.empty() && rule.quantum == 0.0) return file.sessions;
@@ -247,7 +249,8 @@ std::vector<std::string> SilentInstruments(const ObservationTables& tables) {
   return warnings;
 }
 
-/// No table has the column that names plates, and other instruments hide that no touch is read.
+/// Whether no table has the column that names plates, although the project names one. Other
+/// instruments could hide that no touch is read.
 bool PlatesAreNamedNowhere(const std::vector<ObservationFile>& files, const Project& project) {
   return !project.contact->setup.plates.empty() && !project.contact->plate_column.empty() &&
          std::all_of(files.begin(), files.end(),

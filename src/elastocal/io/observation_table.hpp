@@ -10,24 +10,27 @@
 
 namespace elastocal {
 
-/// Observations that were read, and the robot as it stands in them.
+/// Observations that were read, with the setup of the project in which all feet are placed.
 struct ObservationTables {
   Observations observations;
-  ObservationSetup setup;             ///< of the project, all feet placed
-  std::vector<std::string> warnings;  ///< joints beyond limits, repeated rows, ..., a sentence each
+  ObservationSetup setup;             ///< the project's, with all feet placed
+  std::vector<std::string> warnings;  ///< joints beyond limits, repeated rows, ...
 };
 
-/// The files to read where folders may be named: a folder that `simulate` wrote stands for its
-/// observations.csv, with corners.csv where there is one. Throws InputError for another folder.
+/// The files to read for a list of files and folders. A folder that `simulate` wrote stands for its
+/// observations.csv and, if it exists, corners.csv. Throws InputError for other folders.
 std::vector<std::filesystem::path> ObservationFiles(
     const std::vector<std::filesystem::path>& recordings);
 
-/// Reads tables of observations (of ObservationFiles): CSV with a header row, one row a posture;
-/// joint columns under the names of the project in rad or m; the columns of instruments, each in
-/// any of the tables, where empty cells mean that it shows nothing in this posture; the columns
-/// that sessions and plates are told by. A row in which no instrument shows anything is a touch of
-/// the plate that lies flattest, unless the project names a column that says it. `feet`, where
-/// given, says where the feet stand (from an earlier calibration).
+/// Reads tables of observations (see ObservationFiles): CSV with a header row, one row for each
+/// posture, and these columns:
+/// - joints, under the names of the project, in rad or m;
+/// - instruments, each in any of the tables; empty cells mean that it shows nothing in this
+///   posture;
+/// - the columns that tell sessions and plates.
+/// A row in which no instrument shows anything is a touch of the plate that lies flattest, unless
+/// the project names a column for the plate. `feet`, if given, says where the feet stand (from an
+/// earlier calibration).
 ///
 /// Throws InputError naming file, line and column: what a Table refuses; a joint that moves a foot
 /// or what is observed and has neither a column nor a position in the project; an unknown column;

@@ -17,7 +17,7 @@ namespace {
 constexpr double kDegreesPerRadian = 180.0 / M_PI;
 /// Beyond two turns a joint is more likely in degrees than wound up.
 constexpr double kLargestAngle = 4.0 * M_PI;
-constexpr double kLargestSlide = 20.0;  // of the limit of a sliding joint
+constexpr double kLargestSlide = 20.0;  // largest multiple of the limit of a sliding joint
 constexpr double kLeastSlide = 1.0;     // m: limits of grippers are often too narrow
 /// Marker positions of a robot that stands fixed cannot range over more than its size; three times
 /// leaves room for long tools.
@@ -66,9 +66,9 @@ double Range(const Eigen::VectorXd& column) {
   return most - least;
 }
 
-/// Units that lengths may be in where so many of them were the robot's size in metres: a robot that
-/// is calibrated moves its markers by 0.08 to 1.1 times its size (RobotSize). Empty where none of
-/// them fits.
+/// Likely units of lengths that, taken for metres, would be `ratio` times the robot's size. A robot
+/// that is calibrated moves its markers by 0.08 to 1.1 times its size (RobotSize). Empty if no unit
+/// fits.
 std::string LikelyUnits(double ratio) {
   struct LengthUnit {
     const char* name;
@@ -95,7 +95,7 @@ std::string LikelyUnits(double ratio) {
 }
 
 void CheckRanges(const Recording& recording, double size) {
-  double largest = 0.0;  // of the marker that tells most of the unit
+  double largest = 0.0;  // range of the marker that moves most
   std::string found;
   for (int m = 0; m < recording.marker_count(); ++m) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -117,7 +117,7 @@ std::vector<int> SeenMarkers(const Recording& recording, int posture) {
   return seen;
 }
 
-/// Coordinate by coordinate the one in the middle.
+/// Median of the markers' positions in a posture, coordinate by coordinate.
 Eigen::Vector3d MedianPosition(const Recording& recording, int posture,
                                const std::vector<int>& markers) {
   Eigen::Vector3d median;
@@ -131,8 +131,8 @@ Eigen::Vector3d MedianPosition(const Recording& recording, int posture,
   return median;
 }
 
-/// Names the one of two markers far apart that is the odd one: far from where most are or, where
-/// there are only two, the one with the larger numbers.
+/// Throws InputError if two markers are too far apart. It names the odd one: the one that is
+/// farther from the median position or, if only two are seen, from the origin.
 void CheckDistance(const Recording& recording, int posture, int a, int b, double size) {
   const Eigen::Vector3d p = MarkerPosition(recording, posture, a);
   const Eigen::Vector3d q = MarkerPosition(recording, posture, b);
@@ -150,7 +150,7 @@ void CheckDistance(const Recording& recording, int posture, int a, int b, double
 void CheckDistances(const Recording& recording, double size) {
   for (int i = 0; i < recording.posture_count(); ++i) {
     const std::vector<int> seen = SeenMarkers(recording, i);
-    // No two can be far apart where all are near the first: spares most postures the pairs.
+    // If all markers are near the first, no two are far apart, and the pairs need not be checked.
     const bool close = std::all_of(seen.begin(), seen.end(), [&](int m) {
       return (MarkerPosition(recording, i, m) - MarkerPosition(recording, i, seen[0])).norm() <=
              0.5 * kLargestRange * size;
@@ -188,7 +188,8 @@ double ImpossibleSpeed(const Joint& joint) {
   return std::isfinite(limit) ? std::max(kLeast, kTimesLimit * limit) : kLeast;
 }
 
-/// Times in which a robot would have to fly from one posture to the next are not in seconds.
+/// Throws InputError for times that are not in seconds: the joints could not move so fast from one
+/// posture to the next.
 void CheckSeconds(const Recording& recording, const RobotTree& tree) {
   int steps = 0, flying = 0;
   Eigen::Index worst = 0, joint = 0;

@@ -10,17 +10,19 @@
 
 namespace elastocal {
 
-/// Checks that a recording can be what it says it is: throws InputError for two markers with
-/// identical numbers, for positions that are not in metres (a marker ranges over more than three
-/// times the robot's size though the root is held, or is that far from another one in a posture;
-/// the message names the units that fit), joints that look like degrees (beyond two turns) or
-/// millimetres (20 times their limit), times in which joints would have to move faster than any
-/// does (mostly above 20 rad/s and five times their limit), and two or more postures that are all
-/// the same.
+/// Checks that a recording is plausible. Throws InputError for
+/// - two markers with identical numbers;
+/// - positions that are not in metres: a marker ranges over more than three times the robot's size
+///   though the root is held, or is that far from another one in a posture (the message names the
+///   units that fit);
+/// - joints that look like degrees (beyond two turns) or millimetres (20 times their limit);
+/// - times that are not in seconds: in more than half of the steps, a joint would move faster than
+///   20 rad/s (m/s) and five times its limit;
+/// - two or more postures that are all the same.
 void CheckPlausible(const Recording& recording, const RobotTree& tree);
 
-/// Degrees or millimetres in the recorded positions of one joint, none of them NaN; `place(i)`
-/// begins a message about the i-th.
+/// Throws InputError for degrees or millimetres in the recorded positions of one joint, none of
+/// them NaN. `place(i)` is the beginning of a message about the i-th position.
 void CheckUnits(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& positions,
                 const std::function<std::string(Eigen::Index)>& place);
 
@@ -31,8 +33,8 @@ bool BeyondLimits(const Joint& joint, double position);
 /// worst line and how many there are.
 std::vector<std::string> LimitWarnings(const Recording& recording, const RobotTree& tree);
 
-/// A sentence naming the lines that repeat positions of joints and markers of lines above them;
-/// empty where there are none. The recording must have lines.
+/// A sentence naming the lines that repeat the joint and marker positions of lines above them;
+/// empty if there are none. The recording must have lines.
 std::string RepetitionWarning(const Recording& recording);
 
 }  // namespace elastocal

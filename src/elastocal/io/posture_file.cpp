@@ -14,7 +14,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kBeyond = 1e-6;  // of a limit, rad or m: rounding of the file
+constexpr double kBeyond = 1e-6;  // rad or m beyond a limit, by rounding of the file
 
 /// A name as YAML text, in quotes.
 std::string Quoted(const std::string& name) {

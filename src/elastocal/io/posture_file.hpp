@@ -10,9 +10,9 @@
 
 namespace elastocal {
 
-/// What postures of a posture file are for, where the project has `contact` or `instruments`: the
-/// name of the plate that touches its table in them, or this one, of postures in which instruments
-/// look at the robot.
+/// Name in a posture file of postures in which instruments look at the robot, if the project has
+/// `contact` or `instruments`. (Other postures then have the name of the plate that touches its
+/// table.)
 inline constexpr const char* kLooks = "instruments";
 
 /// Calibration postures of one chain (or of a plate, or kLooks), with the feet that stand

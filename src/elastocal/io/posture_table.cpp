@@ -57,8 +57,8 @@ void CheckMovingJoints(const Table& table, const Project& project, const Posture
   }
 }
 
-/// Throws InputError for a table whose columns are a time and quantities of joints, and nothing
-/// else, one at least of which only logs have.
+/// Throws InputError for a joint log: a table whose columns are only a time and quantities of
+/// joints, at least one of which only logs have.
 void RefuseJointLog(const Table& table, const Project& project) {
   constexpr std::array<std::string_view, 4> kOfLogs = {"_torque", "_effort", "_velocity",
                                                        "_position"};
@@ -69,7 +69,7 @@ void RefuseJointLog(const Table& table, const Project& project) {
   bool timed = false, logged = false;
   for (const std::string& column : table.header()) {
     const std::string plain = PlainColumnName(column);
-    if (plain.empty()) continue;  // of a bag: what is no quantity of a joint
+    if (plain.empty()) continue;  // column of a topic's header, no quantity of a joint
     if (plain == project.recording.time || TimeUnitOfName(plain)) {
       timed = true;
     } else if (const auto ending = std::ranges::find_if(
@@ -170,7 +170,7 @@ void ReadPostures(const Project& project, const PostureColumns& columns, Table& 
   if (!time.empty()) recording.time_s = StackRows(time, rows);
 }
 
-/// The positions of motors as those of the joints; `columns` are of a project WithMotors.
+/// Replaces positions of motors by those of the joints. `with_motors` is a project WithMotors.
 void CloseLinkages(const Project& with_motors, const RobotTree& tree, Recording& recording) {
   for (const Linkage& linkage : tree.linkages) {
     const auto first = static_cast<std::size_t>(linkage.joints[0]);
@@ -184,8 +184,8 @@ void CloseLinkages(const Project& with_motors, const RobotTree& tree, Recording&
   }
 }
 
-/// For many programs, a marker that they do not see is at exactly 0 0 0. One that is there in all
-/// postures may define the cameras' frame.
+/// Takes positions of exactly 0 0 0 for markers that were not seen, as many programs write them. A
+/// marker that is there in all postures is kept: it may define the cameras' frame.
 void TakeZerosAsNotSeen(const PostureColumns& columns, const Project& project,
                         PostureTable& table) {
   Recording& recording = table.recording;

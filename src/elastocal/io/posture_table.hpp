@@ -11,7 +11,7 @@
 
 namespace elastocal {
 
-/// A recording with what is odd about it but no reason to refuse it.
+/// A recording, with warnings about it that are no reason to refuse it.
 struct PostureTable {
   Recording recording;
   std::vector<std::string> markers_not_recorded;  ///< markers of the project without columns
@@ -23,7 +23,7 @@ struct PostureTable {
 /// with cells that are empty or NaN was not seen. Throws InputError naming file, line and column:
 /// missing or unknown column (with the nearest known one), text or NaN where a number belongs (NaN
 /// in some cells of a marker), no rows, a line above 1 MiB, two markers with identical columns,
-/// other units than metres (judged by the robot's size; of one marker: FindOtherUnit), postures
+/// other units than metres (judged by the robot's size; for one marker by FindOtherUnit), postures
 /// that are all the same; a recording over time (RefuseRecording).
 PostureTable ReadPostureTable(const std::filesystem::path& file, const Project& project);
 
@@ -35,7 +35,7 @@ PostureTable ReadPostureTable(std::istream& stream, const std::string& source,
 void WritePostureTable(const std::filesystem::path& file, const Recording& recording,
                        const Project& project);
 
-/// The same, under the default column names.
+/// Writes a recording as a posture table, under the default column names.
 void WritePostureTable(const std::filesystem::path& file, const Recording& recording,
                        const RobotTree& tree);
 

@@ -97,7 +97,7 @@ void TakeWrenches(const JointLog& from, const Project& project,
                    project.file.string() + ", joints with other names in recording.columns.joints");
 }
 
-/// Torques are taken as a whole or not at all; those of joints without a sensor are not used.
+/// Takes the torques of a joint, all or none; those of joints without a sensor are not used.
 void TakeTorques(const Eigen::Ref<const Eigen::VectorXd>& torques, int joint,
                  const Project& project, JointLog& log) {
   const Eigen::Index missing = torques.array().isNaN().count();
@@ -138,7 +138,8 @@ MarkerFile ReadMarkerFile(const fs::path& file, const ReaderOptions& options,
 
 namespace {
 
-/// Whether a joint seems to turn by half a turn faster than any does. A lost sample is often 0.
+/// Whether a joint seems to turn by half a turn faster than any joint does. (A lost sample is often
+/// 0.)
 bool IsHalfTurn(double before, double after, double seconds) {
   constexpr double kNear = 0.1, kFastest = 50.0;  // rad, rad/s
   const double step = std::abs(after - before);
@@ -146,8 +147,8 @@ bool IsHalfTurn(double before, double after, double seconds) {
          after != 0.0;
 }
 
-/// Positions of turning joints that jump by a turn between two samples, as a log does that counts
-/// from -pi to pi, go on instead. Faster than this no joint turns.
+/// Removes jumps by a whole turn between two samples of a revolute joint, as in a log that counts
+/// from -pi to pi. No joint turns so fast.
 void UnwrapTurns(const RobotTree& tree, JointLog& log) {
   constexpr double kLongestStep = 0.2;  // s
   constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -207,7 +208,8 @@ bool BeginsLikeQtm(const ByteSource& source) {
          first.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == std::string_view::npos;
 }
 
-/// The same, where tables are expected, whose first column may be called Time or t.
+/// Whether the first line is surely of a Qualisys TSV where tables are expected, whose first column
+/// may be called Time or t.
 bool IsSurelyQtm(const ByteSource& source) {
   std::array<char, 4096> head{};
   std::string_view text(head.data(), source.Read(0, head));
@@ -320,7 +322,7 @@ void RefuseRecording(const fs::path& file) {
 
 namespace {
 
-/// What a log has of joints, or of motors where the project names these.
+/// The log of joints, or of motors if the project names these (WithMotors).
 JointLog TakeColumns(const JointLog& from, const Project& project) {
   const std::vector<Joint>& joints = project.tree.joints;
   std::map<std::string, int> joint_of;

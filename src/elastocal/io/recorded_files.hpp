@@ -15,7 +15,7 @@ namespace elastocal {
 struct MarkerFile {
   MarkerTrajectories trajectories;
   std::string up;        ///< the axis that the file says points up, "z", "-y"; empty: it does not
-  bool up_is_z = false;  ///< the format's custom, unless the user says otherwise (Qualisys TSV)
+  bool up_is_z = false;  ///< z points up by custom of the format (Qualisys TSV)
   std::optional<double> start_s;  ///< of the first frame, on the clock of the file's joint log
 };
 
@@ -31,22 +31,22 @@ MarkerFile ReadMarkerFile(const std::filesystem::path& file, const ReaderOptions
 JointLog ReadJointFile(const std::filesystem::path& file, const ReaderOptions& options,
                        const Project& project);
 
-/// Reads a file of any of these formats, or the program's own (Qualisys TSV, joint log as CSV), by
-/// itself: without a project, under the names of the file. In a CSV, every column but the time
-/// (FindTime) is a joint's, unless it is a table of postures or of something else
-/// (ReadNamedPostures, ReadColumnsAsTheyAre), of which `postures` tells.
-/// RecordingFile::up is "z" for a Qualisys TSV, by custom.
+/// Reads a file of any of these formats, or of the program's own (Qualisys TSV, joint log as CSV),
+/// without a project and under the names of the file. A CSV that is a table of postures or of
+/// something else (ReadNamedPostures, ReadColumnsAsTheyAre) is described by
+/// RecordingFile::postures. In any other CSV, every column but the time (FindTime) is that of a
+/// joint. RecordingFile::up is "z" for a Qualisys TSV, by custom.
 RecordingFile ReadAnyRecording(const std::filesystem::path& file, const ReaderOptions& options);
 
-/// Throws InputError for a file that is a recording over time by its contents (a format of
-/// ReadRecordingFile, or a Qualisys TSV), where a table was expected: it says what such a file
-/// needs. Does nothing where there is no such file.
+/// Throws InputError for a file where a table was expected, if it is a recording over time by its
+/// contents (a format of ReadRecordingFile, or a Qualisys TSV). The message says what such a file
+/// needs. Does nothing if the file does not exist.
 void RefuseRecording(const std::filesystem::path& file);
 
-/// A log under the names of a file as one under those of the project: columns renamed, mimic joints
-/// and what the project ignores left out, columns of force-torque sensors taken as such. Throws
-/// InputError: unknown names (with the nearest known one), positions that look like degrees, a
-/// sensor's torques that are absent in some samples.
+/// Turns a log under the names of a file into one under the names of the project. It renames
+/// columns, leaves out mimic joints and what the project ignores, and takes the columns of
+/// force-torque sensors as wrenches. Throws InputError: unknown names (with the nearest known one),
+/// positions that look like degrees, a sensor's torques that are absent in some samples.
 JointLog TakeJoints(const JointLog& log, const Project& project);
 
 }  // namespace elastocal

@@ -19,11 +19,11 @@ std::array<std::string, 3> MarkerColumns(const Project& project, const std::stri
 /// Default columns of a marker: NAME_x, NAME_y, NAME_z.
 std::array<std::string, 3> DefaultMarkerColumns(const std::string& marker);
 
-/// Gives a column of the project's a meaning. Throws InputError naming the project file where it
-/// has one already.
+/// Adds the role of a column that the project names. Throws InputError, naming the project file, if
+/// the column has a role already.
 void AddRole(const Project& project, const std::string& column, int quantity, ColumnRoles& roles);
 
-/// FindColumns, with the columns that the project ignores passed over.
+/// FindColumns, which also passes over the columns that the project ignores.
 std::vector<int> FindRecordingColumns(const Table& table, ColumnRoles roles, std::size_t quantities,
                                       const Project& project);
 

@@ -70,7 +70,7 @@ TrialSamples Sample(const TrialFiles& files, const MarkedRobot& robot, const Pro
   }
   MeasurementOptions options = project.measurement;
   options.labels.usual = usual;
-  // Of a bag with both, the clocks are one already, up to what the computers differed.
+  // In a bag with both, the clocks are the same, except for differences between computers.
   if (file.start_s && files.markers == files.joints) options.expected_lag_s = -*file.start_s;
   if (files.expected_lag_s) options.expected_lag_s = files.expected_lag_s;
   const std::vector<ReferenceLength>& references = project.recording.reference_lengths;
@@ -84,7 +84,7 @@ TrialSamples Sample(const TrialFiles& files, const MarkedRobot& robot, const Pro
   return samples;
 }
 
-/// Which axis points up: as the user says, or as all files say.
+/// Finds which axis points up: by the user, or by all files.
 class UpAxis {
  public:
   explicit UpAxis(const Experiment& experiment)
@@ -142,7 +142,8 @@ std::vector<TrialSamples> SampleAll(const std::vector<TrialFiles>& trials, const
   return samples;
 }
 
-/// Samples again, as the markers lie in the others, what took clusters of another shape.
+/// Samples trials again whose clusters have another shape than in most trials, now with the usual
+/// shape.
 void SampleOddOnesAgain(const std::vector<TrialFiles>& trials, const MarkedRobot& robot,
                         const Project& project, std::vector<TrialSamples>& samples) {
   std::vector<TrialSummary> summaries;
@@ -198,7 +199,7 @@ std::vector<std::string> TrialsWithout(const std::string& joint,
   return without;
 }
 
-/// `trials`: those whose logs have no positions of the joint, as others have.
+/// A sentence about a joint whose positions are absent in the logs of `trials`, but not of others.
 std::string DescribeMissing(const std::string& joint, double position,
                             const std::vector<std::string>& trials, const Project& project) {
   std::string names;

@@ -14,10 +14,10 @@ namespace elastocal {
 
 /// What cameras and robot recorded, as samples for the estimator.
 struct RecordingFolder {
-  Recording calibration;              ///< of the trials for estimation
-  Recording validation;               ///< of all others: kept apart, to judge the estimates by
-  std::vector<TrialSummary> trials;   ///< all, in the order of the files; also those refused
-  std::vector<std::string> findings;  ///< what a user should know of, a sentence each
+  Recording calibration;              ///< trials for estimation
+  Recording validation;               ///< all other trials, by which the estimates are judged
+  std::vector<TrialSummary> trials;   ///< all trials in the order of the files, refused ones too
+  std::vector<std::string> findings;  ///< what a user should know, one sentence each
 };
 
 /// Whether there is an experiment.yaml in the folder.
@@ -33,13 +33,14 @@ bool IsRecordingFolder(const std::filesystem::path& path);
 RecordingFolder ReadRecordingFolders(const std::vector<std::filesystem::path>& folders,
                                      const Project& project);
 
-/// Markers that take part in a trial, of Project::markers, rising: those on the root link's body;
-/// those of the chains that it exercises; and those on the bodies of its supports, which tell the
-/// root's motion and whether a foot slipped. All others are left out: the joints that move them are
-/// balancing or held, in postures chosen for other joints, and would only add their errors.
+/// Markers that take part in a trial, as ascending indices into Project::markers: those on the root
+/// link's body, those of the chains that the trial exercises, and those on the bodies of its
+/// supports, which tell the root's motion and whether a foot slipped. All others are left out.
+/// Their joints balance the robot or are held, in postures chosen for other joints, and would only
+/// add their errors.
 std::vector<int> TrialMarkers(const Project& project, const TrialFiles& trial);
 
-/// What measurements have to know of a project's robot.
+/// The robot of a project, for the processing of measurements.
 MarkedRobot MakeMarkedRobot(const Project& project);
 
 }  // namespace elastocal

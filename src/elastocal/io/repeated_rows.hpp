@@ -16,7 +16,7 @@ class RepeatedRows {
   /// Takes the row that was read last.
   void Take(const Table& table);
 
-  /// "left.csv:42: this row and 39 more repeat ..."; empty where no row is repeated.
+  /// "left.csv:42: this row and 39 more repeat ..."; empty if no row is repeated.
   std::string Warning() const;
 
  private:

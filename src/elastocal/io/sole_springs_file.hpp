@@ -12,12 +12,11 @@ class Emitter;
 
 namespace elastocal {
 
-/// Adds the list `soles` of a calibration.yaml: of the feet that a load told anything of. Nothing
-/// where there are none.
+/// Adds the list `soles` of a calibration.yaml. Adds nothing if there are no springs.
 void EmitSoleSprings(const std::vector<SoleSpring>& springs, YAML::Emitter& yaml);
 
-/// The same list, read from the file's mapping; empty where it has none. Throws InputError naming
-/// file, line and key.
+/// Reads the list `soles` from the mapping of the file; empty if there is none. Throws InputError
+/// naming file, line and key.
 std::vector<SoleSpring> ReadSoleSprings(const YamlValue& root);
 
 }  // namespace elastocal

@@ -19,8 +19,8 @@ SingularValueDecomposition DecomposeSingular(const Eigen::MatrixXd& A);
 /// The values alone, which takes less time.
 Eigen::VectorXd SingularValues(const Eigen::MatrixXd& A);
 
-/// S = vectors diag(values) vectors^T of a symmetric matrix, whose lower triangle alone is read;
-/// the values ascend.
+/// S = vectors diag(values) vectors^T of a symmetric matrix, of which only the lower triangle is
+/// read; the values ascend.
 struct SymmetricDecomposition {
   Eigen::MatrixXd vectors;
   Eigen::VectorXd values;
@@ -33,11 +33,12 @@ Eigen::VectorXd SymmetricValues(const Eigen::MatrixXd& S);
 /// R of A = Q R by Householder's reflections, min(rows, columns) x columns.
 Eigen::MatrixXd TriangularFactor(const Eigen::MatrixXd& A);
 
-/// Q of the same: rows x rows, and its first min(rows, columns) columns alone.
+/// Q of A = Q R: rows x rows (OrthogonalFactor), or only its first min(rows, columns) columns
+/// (ThinOrthogonalFactor).
 Eigen::MatrixXd OrthogonalFactor(const Eigen::MatrixXd& A);
 Eigen::MatrixXd ThinOrthogonalFactor(const Eigen::MatrixXd& A);
 
-/// The x that minimises |A x - b|: of several the shortest.
+/// The x that minimises |A x - b|; if there are several, the shortest.
 Eigen::VectorXd ShortestSolution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 }  // namespace elastocal

@@ -20,7 +20,7 @@ class InputError : public std::runtime_error {
 template <typename Names>
 std::string DidYouMean(const std::string& name, const Names& candidates);
 
-/// Number of single-character edits (Levenshtein distance); capitals are as good as small letters.
+/// Number of single-character edits (Levenshtein distance), without regard to capitals.
 int EditDistance(const std::string& a, const std::string& b);
 
 template <typename Names>

@@ -13,8 +13,8 @@ using Clock = std::chrono::steady_clock;
 struct Interruptible::State {
   std::function<void()> look;
   std::thread::id owner = std::this_thread::get_id();
-  Clock::time_point next_look = Clock::now();  ///< of the owner alone
-  std::exception_ptr reason;                   ///< what ended the work; of the owner alone
+  Clock::time_point next_look = Clock::now();  ///< used by the owner only
+  std::exception_ptr reason;                   ///< what ended the work; used by the owner only
   std::atomic<bool> ended = false;
 };
 

@@ -8,22 +8,23 @@
 
 namespace elastocal {
 
-/// How often a thread looks whether its work is to end early.
+/// Least time between two checks of a thread whether its work is to end early.
 inline constexpr std::chrono::milliseconds kBetweenLooks(50);
 
-/// Called in the inner loops of all long work, several times a second: a place where the work may
-/// be ended early. Nothing happens unless an Interruptible lives; then it takes some 30 ns.
+/// A place where long work may be ended early. The inner loops of all long work call it several
+/// times a second. It does nothing unless an Interruptible exists on the thread; then it takes some
+/// 30 ns.
 void InterruptionPoint();
 
-/// What leaves the work on other threads than the one that was interrupted.
+/// Exception that ends the work on the other threads when a thread is interrupted.
 struct Interrupted : std::exception {
   const char* what() const noexcept override { return "interrupted"; }
 };
 
-/// While it lives, the work of this thread can be ended early, as by Ctrl-C: InterruptionPoint
-/// calls `look` on this thread, every kBetweenLooks, and an exception that `look` throws leaves the
-/// work like any other; where somebody swallows it, the next point throws it again. What ForAll
-/// does on further threads for this work ends with it.
+/// Makes the work of this thread interruptible (for instance by Ctrl-C) while the object exists.
+/// InterruptionPoint calls `look` on this thread every kBetweenLooks. An exception that `look`
+/// throws ends the work; if somebody swallows it, the next InterruptionPoint throws it again. The
+/// work of ForAll on further threads ends as well.
 ///
 ///   const Interruptible interruptible([] { if (stop) throw Stop(); });
 ///   DesignPostures(project, {});
@@ -48,7 +49,8 @@ class InterruptionOfCaller {
  public:
   InterruptionOfCaller();
 
-  /// To be kept on the other thread while it works. Points there throw Interrupted.
+  /// The other thread keeps the returned object while it works. InterruptionPoint there throws
+  /// Interrupted.
   Interruptible Share() const { return Interruptible(state_); }
 
  private:

@@ -7,7 +7,7 @@
 
 namespace elastocal {
 
-/// Stands for what was not measured.
+/// Stands for a value that was not measured.
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Standard deviation of normal noise over its median absolute deviation.

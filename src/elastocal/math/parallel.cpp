@@ -23,7 +23,7 @@ class SharedWork {
     if (progress_) progress_(0, static_cast<int>(count_));
   }
 
-  /// On one of the threads, until nothing is left to be begun.
+  /// Does work on one of the threads until nothing is left to be begun.
   void Do() {
     try {
       for (std::size_t i = next_++; i < count_; i = next_++) {
@@ -48,7 +48,7 @@ class SharedWork {
     is_finished_.notify_one();
   }
 
-  /// Until so many other threads have finished. The caller can be interrupted meanwhile.
+  /// Waits until `others` other threads have finished. The caller can be interrupted meanwhile.
   void WaitFor(int others) {
     std::unique_lock lock(guard_);
     while (!is_finished_.wait_for(lock, kBetweenLooks, [&] { return finished_ == others; })) {
@@ -62,14 +62,14 @@ class SharedWork {
     }
   }
 
-  /// What ended the work early: rather its reason than that it was interrupted.
+  /// Throws the exception that ended the work early; a failure takes precedence over Interrupted.
   void Rethrow() const {
     if (failure_) std::rethrow_exception(failure_);
     if (interruption_) std::rethrow_exception(interruption_);
   }
 
  private:
-  /// In a handler: keeps its exception.
+  /// Keeps the exception of the handler that calls it, and stops further work.
   void End(std::exception_ptr& reason) {
     const std::lock_guard lock(guard_);
     reason = std::current_exception();

@@ -15,8 +15,8 @@ struct PriorityQrResult {
   /// kept x dropped: A(:, dropped) = A(:, kept) * regrouping. Therefore A x determines only
   /// the combination x(kept) + regrouping * x(dropped).
   Eigen::MatrixXd regrouping;
-  /// Norm of what is left of each column after projection on the kept columns before it, relative
-  /// to the column's own norm (0 for a column that is zero up to rounding).
+  /// Norm of the part of each column that is orthogonal to the kept columns before it, relative to
+  /// the column's own norm (0 for a column that is zero up to rounding).
   Eigen::VectorXd remainder;
 };
 

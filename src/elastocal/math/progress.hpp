@@ -5,8 +5,9 @@
 
 namespace elastocal {
 
-/// Called while long work goes on, with the number of finished steps and of all steps: first with
-/// none done, last with all. It may be empty. Work on several threads calls it from one at a time.
+/// Function that long work calls with the number of finished steps and of all steps, first with
+/// none done and last with all. It may be empty. Work on several threads never calls it from two at
+/// a time.
 using Progress = std::function<void(int done, int total)>;
 
 }  // namespace elastocal

@@ -11,7 +11,7 @@
 
 namespace elastocal {
 
-/// Points that are reached from the first one, each by a straight way from another.
+/// A tree of points that are reached from the first one, each by a straight way from its parent.
 class PointTree {
  public:
   explicit PointTree(Eigen::VectorXd root) : nodes_{std::move(root)}, parents_{-1} {}
@@ -48,7 +48,7 @@ class PointTree {
                             nodes_.begin());
   }
 
-  /// From a node to the root.
+  /// The points from a node to the root.
   std::vector<Eigen::VectorXd> WayToRoot(int node) const {
     std::vector<Eigen::VectorXd> way;
     for (; node >= 0; node = parents_[Size(node)]) way.push_back(nodes_[Size(node)]);
@@ -70,7 +70,7 @@ Eigen::VectorXd Draw(const FreeSpace& space, Random& random) {
   return drawn;
 }
 
-/// Cuts off corners that the way does without.
+/// Removes corners that a free straight way can skip.
 void Shorten(const FreeSpace& space, std::vector<Eigen::VectorXd>& way) {
   for (std::size_t begin = 0; begin + 2 < way.size(); ++begin) {
     std::size_t end = way.size() - 1;

@@ -9,12 +9,12 @@
 
 namespace elastocal {
 
-/// A box of points, some of which are free.
+/// A box of points, and a rule that says which of them are free.
 struct FreeSpace {
   Eigen::VectorXd lower, upper;
-  std::function<bool(const Eigen::VectorXd& x)> free;  ///< whether a point is
-  double step = 0.05;     ///< on a straight way, points so far from each other are checked
-  int most_nodes = 2000;  ///< of both trees together, before a search ends
+  std::function<bool(const Eigen::VectorXd& x)> free;  ///< whether a point is free
+  double step = 0.05;     ///< distance between the points that are checked on a straight way
+  int most_nodes = 2000;  ///< largest number of nodes, of both trees together
 };
 
 /// Whether the straight way between two points is free, as far as it is checked. The ends are taken
@@ -24,15 +24,15 @@ bool StraightWayIsFree(const FreeSpace& space, const Eigen::VectorXd& from,
 
 /// A polygon of free ways between two points: corners x dimensions, the ends `from` and `to`
 /// included, which are taken to be free. Two trees of random points grow towards each other
-/// (RRT-Connect, Kuffner & LaValle 2000); corners that are not needed are cut off. The same input
-/// gives the same polygon. Nothing if none was found, which does not say that there is none.
+/// (RRT-Connect, Kuffner & LaValle 2000), and unnecessary corners are cut off. The same input gives
+/// the same polygon. Returns nothing if none was found; there may be one all the same.
 std::optional<Eigen::MatrixXd> ConnectByTrees(const FreeSpace& space, const Eigen::VectorXd& from,
                                               const Eigen::VectorXd& to);
 
 class PointTree;
 
-/// What can be reached from one point on free ways: a tree of random points that grows from it
-/// once.
+/// The points that can be reached from one point on free ways, by a tree of random points that
+/// grows from it once.
 class ReachableSpace {
  public:
   ReachableSpace(FreeSpace space, const Eigen::VectorXd& root);

@@ -21,15 +21,15 @@ Transform TrZ(double distance);
 /// Rotation of `angle` about the unit vector `axis`.
 Transform RotAxis(const Eigen::Vector3d& axis, double angle);
 
-/// The smallest rotation that turns the direction `from` into the direction `to`; of opposite ones,
-/// half a turn about some axis across them.
+/// The smallest rotation that turns the direction `from` into the direction `to`; for opposite
+/// directions, half a turn about some axis at right angles to them.
 Eigen::Matrix3d RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 /// The rigid transform that brings the points `from` (columns, at least three, not on a line)
 /// nearest to the points `to`: least squares, no scale (Umeyama 1991).
 Transform FitRigid(const Eigen::Ref<const Eigen::Matrix3Xd>& from,
                    const Eigen::Ref<const Eigen::Matrix3Xd>& to);
-/// The same of lists of as many points; nothing for fewer than three.
+/// FitRigid for two lists of equally many points; nothing for fewer than three.
 std::optional<Transform> FitRigid(const std::vector<Eigen::Vector3d>& from,
                                   const std::vector<Eigen::Vector3d>& to);
 

@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-/// Place of the first character that is not UTF-8; the size of the text where there is none.
+/// Place of the first character that is not UTF-8; the size of the text if there is none.
 std::size_t FindNotUtf8(std::string_view text) {
   const char* const end = text.data() + text.size();
   for (const char* at = text.data(); at != end;) {

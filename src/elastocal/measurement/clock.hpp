@@ -65,7 +65,7 @@ struct ClockFit {
   double sd_s = 0.0;             ///< largest standard deviation of the lag over the common time
   double peak = 0.0;             ///< correlation at the best lag, in [-1, 1]
   double second_peak = 0.0;   ///< correlation at the second peak, outside the slopes of the first
-  double second_lag_s = 0.0;  ///< of that peak
+  double second_lag_s = 0.0;  ///< lag at the second peak
   double line_residual_s = 0.0;  ///< root mean square of used windows' lags from the line
   double overlap_s = 0.0;        ///< time during which both speeds are known
   std::vector<WindowLag> windows;

@@ -18,12 +18,12 @@ constexpr int kMostMoments = 400;        // errors of the robot, not noise, limi
 constexpr double kBlock_s = 2.0;         // about the time in which a joint passes a posture
 constexpr int kPasses = 3;               // the first change of the lag may be of tens of ms
 constexpr double kUnchanged_s = 2e-3;    // at usual accelerations, 10 um off a straight line
-constexpr double kWorthKnowing = 30e-6;  // standard deviation of a drift; clocks are as bad
-constexpr double kClearly = 0.5;         // share of what the other lag leaves
+constexpr double kWorthKnowing = 30e-6;  // largest sd of a drift: clocks drift about as much
+constexpr double kClearly = 0.5;         // largest ratio of the residuals at the two lags
 constexpr double kVelocityStep_s = 5e-3;
 constexpr double kJointMoves = 2e-3;  // rad or m: range of a joint that moves
 
-// What robots are off, of which only the order of magnitude matters.
+// Prior standard deviations of a robot's errors. Only their order of magnitude matters.
 constexpr double kAngleSd = 0.03;  // rad
 constexpr double kLengthSd_m = 0.01;
 constexpr double kMarkerSd_m = 0.03;
@@ -44,7 +44,8 @@ class Comparison {
         trajectories_(trajectories),
         kinematics_(robot, markers, standing) {}
 
-  /// Root mean square of what cameras and log say otherwise, m; infinite without a moment.
+  /// Root mean square difference of measured and predicted coordinates, m; infinite without a
+  /// moment.
   double Left(const ClockFit& clock) {
     TakeMoments(clock);
     Eigen::MatrixXd predicted(std::ssize(time_s_), 3 * std::ssize(markers_));
@@ -78,7 +79,7 @@ class Comparison {
   }
 
  private:
-  // Frames, evenly over the trial, at which the log says where the joints are.
+  // Takes frames evenly over the trial, at which the log has the joints' positions.
   void TakeMoments(const ClockFit& clock) {
     const int stride = std::max(1, trajectories_.frame_count() / kMostMoments);
     frames_.clear();
@@ -109,7 +110,7 @@ class Comparison {
     return kinematics_.Positions(Joints(robot_time_s)).reshaped();
   }
 
-  // What the cameras saw, in about the frame of the prediction.
+  // The measured positions, brought by one rigid transform to the frame of the prediction.
   Eigen::MatrixXd SeenFromStanding(const Eigen::MatrixXd& predicted) const {
     Eigen::MatrixXd seen = trajectories_.positions(frames_, Eigen::all);
     std::vector<Eigen::Vector3d> from, to;
@@ -151,7 +152,7 @@ class Comparison {
     return moving;
   }
 
-  // Torques of the log that are measured, by joint of the tree; -1: none.
+  // For each joint of the tree, the log's column with its measured torque; -1: none.
   std::vector<int> TorqueColumns() const {
     std::vector<int> columns(robot_.tree.joints.size(), -1);
     for (int c = 0; c < log_.joints; ++c) {
@@ -267,14 +268,14 @@ class Comparison {
   std::vector<double> time_s_, robot_time_s_;
 };
 
-// With a drift, if the motion tells it.
+// Change of the lag, with a drift if the motion tells the drift to `kWorthKnowing`.
 std::optional<LagChange> FindChange(const MarkerMotion& motion) {
   const auto with_drift = FindLagChange(motion, true, kBlock_s);
   if (with_drift && with_drift->slope_sd < kWorthKnowing) return with_drift;
   return FindLagChange(motion, false, kBlock_s);
 }
 
-// robot time = (1 + 1e-6 drift) camera time - lag, with what is added to the lag at each time.
+// Adds a change of the lag to robot time = (1 + 1e-6 drift) camera time - lag.
 void Add(const LagChange& change, ClockFit& clock) {
   clock.lag_s += change.At(0.0);
   clock.drift_ppm -= 1e6 * change.slope;
@@ -305,7 +306,7 @@ std::optional<Refined> Refine(Comparison& comparison, const ClockFit& first,
   return refined;
 }
 
-// Of two lags.
+// Refines both lags of an ambiguous clock and chooses the one with clearly smaller residuals.
 ClockFit Choose(Comparison& comparison, const ClockFit& by_speed, const ClockOptions& options) {
   ClockFit other = by_speed;
   other.lag_s = by_speed.second_lag_s;

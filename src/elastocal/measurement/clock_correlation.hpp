@@ -25,7 +25,7 @@ struct CorrelationPeaks {
   double lag_s = 0.0;  ///< refined by a parabola
   double peak = 0.0;
   double second_peak = 0.0;   ///< 0 if there is none
-  double second_lag_s = 0.0;  ///< of that peak
+  double second_lag_s = 0.0;  ///< lag at the second peak
   bool at_the_rim = false;    ///< the highest peak is at the first or the last lag
 };
 

@@ -10,17 +10,18 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeastClockPeak = 0.9;  // what is right correlates well
-constexpr double kClearlyBetter = 0.25;  // of what a correlation lacks to one is left
-constexpr double kStep_s = 0.6;          // of two rates tried, at the end of the log
+constexpr double kLeastClockPeak = 0.9;  // least correlation of a clock that is right
+constexpr double kClearlyBetter = 0.25;  // largest share that is left of 1 - correlation
+constexpr double kStep_s = 0.6;          // by which two rates differ at the end of the log
 constexpr double kFarthestRate = 0.2;
 constexpr int kMostRates = 200;
-constexpr int kCuts = 16;      // of the log, at which its clock may jump ...
-constexpr int kLeastPart = 3;  // ... with as many parts to either side
+constexpr int kCuts = 16;      // parts of the log, between which its clock may jump
+constexpr int kLeastPart = 3;  // parts that must be on either side of the jump
 constexpr double kLeastJump_s = 0.1;
-constexpr double kMostUnseen = 0.1;  // of a part: time without cameras
+constexpr double kMostUnseen = 0.1;  // largest share of a part's time without cameras
 
-/// Correlation of the cameras' speeds with some of the log's, whose clock has a rate.
+/// Correlation of the cameras' speeds with those of the log's rows `begin` to `end` - 1, whose
+/// clock is corrected by `rate`.
 CorrelationPeaks Correlation(const MeanSpeeds& speeds, double rate, Eigen::Index begin,
                              Eigen::Index end) {
   const double start = speeds.logged.time_s[0];
@@ -44,7 +45,7 @@ std::optional<ClockMistake> FindRate(const MeanSpeeds& speeds, double least_peak
   for (int k = 1; k * step <= kFarthestRate; ++k) {
     for (const double sign : {-1.0, 1.0}) try_rate(1.0 + sign * k * step);
   }
-  if (best) {  // once more between its neighbours
+  if (best) {  // search once more, more finely, between its neighbours
     const double coarse = best->rate;
     for (int k = -4; k <= 4; ++k) try_rate(coarse + 0.2 * k * step);
     return best;
@@ -61,7 +62,7 @@ struct CameraSpan {
 std::optional<ClockMistake> FindJump(const MeanSpeeds& speeds, double least_peak) {
   const Eigen::VectorXd& time = speeds.logged.time_s;
   const Eigen::Index rows = time.size();
-  const Eigen::Index around = rows / (2 * kCuts) + 1;  // a cut of the log is in some gap
+  const Eigen::Index around = rows / (2 * kCuts) + 1;  // the jump is within so many rows of a cut
   const double camera_s =
       static_cast<double>(speeds.measured.values.size()) / speeds.measured.rate_hz;
   std::optional<ClockMistake> best;
@@ -70,7 +71,7 @@ std::optional<ClockMistake> FindJump(const MeanSpeeds& speeds, double least_peak
     const CorrelationPeaks before = Correlation(speeds, 1.0, 0, row - around);
     const CorrelationPeaks after = Correlation(speeds, 1.0, row + around, rows);
     if (!before.overlap || !after.overlap) continue;
-    // A part that the cameras hardly saw fits by chance; and time runs on.
+    // A part that the cameras hardly saw fits by chance. The second part must follow the first.
     const CameraSpan first{time[0] + before.lag_s, time[row - around - 1] + before.lag_s};
     const CameraSpan second{time[row + around] + after.lag_s, time[rows - 1] + after.lag_s};
     const bool possible = first.begin_s > -kMostUnseen * (first.end_s - first.begin_s) &&

@@ -17,7 +17,7 @@ namespace {
 
 constexpr Eigen::Index kMostFrames = 4000;  // give a median to 2 % of the noise
 constexpr int kAllPermutationsUpTo = 5;     // 120 of them
-constexpr double kLeastUsual = 0.05;        // of the frames, for the usual distance to be true
+constexpr double kLeastUsual = 0.05;        // least share of the frames with a usual distance
 
 std::vector<Permutation> ListPermutations(int size) {
   Permutation order(static_cast<std::size_t>(size));
@@ -57,7 +57,7 @@ double Separation(const ClusterShape& shape) {
 }
 
 bool Agree(double distance, double usual, double tolerance) {
-  return !(std::abs(distance - usual) > tolerance);  // where one is not known, they do not differ
+  return !(std::abs(distance - usual) > tolerance);  // true also if one of them is unknown (NaN)
 }
 
 // Whether the distances under an order of the labels are the usual ones.
@@ -72,7 +72,7 @@ bool HasUsual(const ClusterShape& shape, const Permutation& order, const Eigen::
   return true;
 }
 
-// The values near the usual one, where they are a twentieth of all; else nothing.
+// The values near the usual one if they are at least `kLeastUsual` of all; else nothing.
 std::vector<double> NearUsual(const std::vector<double>& values, double usual, double tolerance) {
   std::vector<double> near;
   std::copy_if(values.begin(), values.end(), std::back_inserter(near),

@@ -20,6 +20,7 @@ using DistanceTable = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eige
 /// Column of the pair (i, j), i != j, in the distance table of a cluster of `size` markers.
 int PairColumn(int i, int j, int size);
 
+/// Measures the distances between the markers `markers` (indices into the trajectories).
 DistanceTable MeasureDistances(const MarkerTrajectories& trajectories,
                                const std::vector<int>& markers);
 
@@ -48,11 +49,11 @@ struct ClusterShape {
 /// standard deviation is estimated from the differences of successive frames (median absolute
 /// difference), which neither a swap nor a displaced marker affects.
 ///
-/// `usual`, if not empty, are the distances of the pairs in other trials, m (NaN: unknown). Where a
-/// twentieth of the frames agrees with them, so does the shape, whatever most frames show: a marker
-/// that was displaced within the trial, or labels exchanged in most of it. If all frames differ,
-/// but another order of the labels has the usual distances, the labels are exchanged in all of the
-/// trial, and the shape is the usual one.
+/// `usual`, if not empty, are the distances of the pairs in other trials, m (NaN: unknown). If at
+/// least a twentieth of the frames has the usual distance of a pair, the shape takes it, whatever
+/// most frames show: a marker was displaced within the trial, or labels were exchanged in most of
+/// it. If all frames differ, but another order of the labels has the usual distances, the labels
+/// are exchanged in all of the trial, and the shape is the usual one.
 ClusterShape MeasureShape(const DistanceTable& table, int size, double tolerance_sd,
                           double least_tolerance_m, const Eigen::VectorXd& usual = {});
 

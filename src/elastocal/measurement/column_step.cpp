@@ -8,11 +8,11 @@
 namespace elastocal {
 namespace {
 
-constexpr int kFewestNumbers = 10;      // that tell a step
-constexpr double kOnGrid = 0.03;        // of a step
-constexpr double kMostOnGrid = 0.9;     // of the numbers, on the grid
-constexpr std::size_t kCandidates = 5;  // smallest differences that may be the step
-constexpr std::size_t kParts = 3;       // one of them may be two or three steps
+constexpr int kFewestNumbers = 10;      // least count of numbers that tells a step
+constexpr double kOnGrid = 0.03;        // a multiple may be off by this share of a step
+constexpr double kMostOnGrid = 0.9;     // least share of the differences that are multiples
+constexpr std::size_t kCandidates = 5;  // smallest differences that are tried as the step
+constexpr std::size_t kParts = 3;       // a difference may be one, two or three steps
 constexpr double kSameNumber = 2e-6;    // rad or m: a log's own digits
 
 }  // namespace
@@ -35,7 +35,7 @@ double StepOf(const Eigen::VectorXd& column) {
     double step = sorted[k / kParts] / static_cast<double>(1 + k % kParts);
     double sum = 0.0, steps = 0.0;
     std::size_t on = 0;
-    for (const double difference : sorted) {  // the step is known better with each
+    for (const double difference : sorted) {  // each multiple makes the step more accurate
       const double multiple = std::round(difference / step);
       if (multiple < 1.0 || std::abs(difference / step - multiple) > kOnGrid) continue;
       ++on;

@@ -5,9 +5,10 @@
 
 namespace elastocal {
 
-/// The largest step of which all numbers of a column are multiples, but for a constant; 0 where
-/// there is none (at least ten different numbers tell it; nine of ten suffice, for a mean of two
-/// neighbours is none).
+/// The resolution of a column: the largest step of which the numbers, less a constant, are
+/// multiples. One tenth of the differences of neighbouring numbers may be none, because a mean of
+/// two steps is no multiple. A step is told only by ten or more different numbers. Returns 0 if
+/// there is no step.
 double StepOf(const Eigen::VectorXd& column);
 
 }  // namespace elastocal

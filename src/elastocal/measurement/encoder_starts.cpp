@@ -12,18 +12,19 @@ namespace {
 
 constexpr int kFewestReadings = 8;
 constexpr double kLargestStep = 2e-3;    // rad or m: commanded positions differ by more
-constexpr double kSmallestStep = 1e-8;   // rad or m: beyond are roundings
-constexpr int kMostSteps = 3;            // that the smallest changes are
-constexpr double kSameRemainder = 4e-3;  // of a step
+constexpr double kSmallestStep = 1e-8;   // rad or m: smaller changes are rounding errors
+constexpr int kMostSteps = 3;            // a change is tried as one to so many steps
+constexpr double kSameRemainder = 4e-3;  // remainders that differ by less of a step are equal
 constexpr double kChance = 1e-6;         // that a column seems to tell starts though it does not
-constexpr double kMostChanges = 0.25;    // of the rows, that begin another start
-constexpr int kFewestFractions = 8;      // of a step: fewer may be the steps of a finer encoder
-constexpr int kMostFractions = 64;       // to which readings may be rounded
+constexpr double kMostChanges = 0.25;    // largest share of rows that begin another start
+constexpr int kFewestFractions = 8;      // fewer parts of a step may be steps of a finer encoder
+constexpr int kMostFractions = 64;       // finest rounding of readings, parts of a step
 
 /// Distance of a number from the nearest whole one.
 double OffWhole(double value) { return std::abs(value - std::round(value)); }
 
-/// The readings by remainder: a number for each, in order of appearance.
+/// For each reading, the number of its remainder after division by the step. Remainders are
+/// numbered in order of appearance.
 std::vector<int> ByRemainder(const Eigen::VectorXd& readings, double step) {
   std::vector<double> known;
   std::vector<int> numbers;
@@ -38,7 +39,8 @@ std::vector<int> ByRemainder(const Eigen::VectorXd& readings, double step) {
   return numbers;
 }
 
-/// Into how many equal parts of a step the readings may be rounded.
+/// The least number of equal parts of a step of which all changes are multiples; `kMostFractions`
+/// if there is none below.
 int FractionsOfStep(const Eigen::VectorXd& changes, double step) {
   for (int fractions = 1; fractions < kMostFractions; ++fractions) {
     const bool rounded = std::all_of(changes.begin(), changes.end(), [&](double change) {
@@ -71,8 +73,9 @@ Eigen::VectorXd ChangesOf(const Eigen::VectorXd& readings) {
                                            static_cast<Eigen::Index>(changes.size()));
 }
 
-/// The largest step that divides most of the changes, but not all, by no chance: any change would,
-/// if readings are rounded to few parts of it.
+/// The largest step that divides at least half of the changes, and does so by chance with a
+/// probability below `kChance`. Readings that are rounded to few parts of a step are refused,
+/// because many changes would then be multiples by chance.
 std::optional<double> FindStep(const Eigen::VectorXd& changes) {
   std::vector<double> candidates;
   for (double change : changes) {

@@ -10,11 +10,11 @@
 namespace elastocal {
 namespace {
 
-constexpr double kPoorPeak = 0.98;       // of a log that may be that of another trial
-constexpr double kLittleOfTrial = 0.5;   // of its duration
-constexpr double kLackWithRight = 0.25;  // of what a correlation lacks to one is left
+constexpr double kPoorPeak = 0.98;       // below this correlation, a log may be of another trial
+constexpr double kLittleOfTrial = 0.5;   // share of a trial's duration
+constexpr double kLackWithRight = 0.25;  // share that the right log leaves of 1 - correlation
 constexpr int kMostUntold =
-    4;  // trials: of more, the cause is another one, and each try reads files
+    4;  // trials: more have another cause in common, and each attempt reads files
 
 bool ClockIsUntold(const TrialSummary& summary) {
   return !summary.refused.empty() && summary.clock.state != ClockState::kReliable;
@@ -26,7 +26,8 @@ bool CoversLittle(const TrialSummary& summary) {
          kLittleOfTrial * summary.frame_count;
 }
 
-/// With the log of another trial, if it is far better than with its own, or as good and far longer.
+/// Whether another trial's log fits the markers far better than their own log, or as well and
+/// covers far more of the trial.
 bool FitsBetter(const SampleWithLog& sample, const TrialSummary& own, std::size_t markers_of,
                 std::size_t log_of) {
   try {

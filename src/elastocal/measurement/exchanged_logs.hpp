@@ -9,16 +9,21 @@
 
 namespace elastocal {
 
-/// The samples of the markers of one trial with the joint log of another one.
+/// Returns the samples of the markers of trial `markers_of` with the joint log of trial `log_of`.
 using SampleWithLog = std::function<TrialSamples(std::size_t markers_of, std::size_t log_of)>;
 
-/// Trials that have each other's joint log. Tried are each trial whose clock cannot be told, and
-/// each other one with a correlation of speeds below 0.98 or a log of less than half of its time:
-/// two of them have if both clocks can be told once the logs are exchanged, with a quarter, at
-/// most, of what the correlations lacked to one; where the own log is the short one, no worse a
-/// correlation is enough. Both are refused then, whatever could be made of
-/// one, and say so. Where more than four clocks cannot be told, nothing is tried: the logs have
-/// another fault in common. `sample` may throw InputError: a log without the joints of that trial.
+/// Finds pairs of trials that have each other's joint log, and refuses both with a sentence that
+/// says so. A pair is tried if the clock of one trial cannot be told, and the other trial is one
+/// - whose clock cannot be told either, or
+/// - whose correlation of speeds is below 0.98, or
+/// - whose log covers less than half of its time.
+/// The logs are exchanged if, with the other's log, each trial's clock can be told and its
+/// correlation lacks less than a quarter of what it lacked to 1. A trial in use with a log of less
+/// than half of its time needs only a correlation that is no worse, by a log of at least half.
+///
+/// If more than four clocks cannot be told, nothing is tried, because the logs then have another
+/// fault in common. `sample` may throw InputError (a log without the joints of that trial), which
+/// means that the logs of this pair are not exchanged.
 void RefuseExchangedLogs(const SampleWithLog& sample, std::vector<TrialSamples>& samples);
 
 }  // namespace elastocal

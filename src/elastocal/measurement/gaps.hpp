@@ -11,7 +11,7 @@ namespace elastocal {
 
 /// How raw marker positions are treated before anything is computed from them (paper, section 5.1).
 struct SmoothingOptions {
-  double longest_fill_s = 0.2;  ///< longer gaps stay open; 0 closes none
+  double longest_fill_s = 0.2;  ///< longer gaps stay open; with 0, all do
   int filter_order = 5;
   double cutoff_hz = 5.0;
 };

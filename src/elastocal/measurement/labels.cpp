@@ -14,8 +14,8 @@ namespace {
 constexpr int kOpen = -1;  // the order of labels is not known from the frame itself
 
 // Where distances are too much alike, labels that are exchanged for a moment show by their jumps.
-constexpr double kSamePlace = 0.3;        // of the cluster's least distance: no other marker
-constexpr double kNoTimeToTurn_s = 0.1;   // from one frame to the next
+constexpr double kSamePlace = 0.3;        // share of the cluster's least distance: same place
+constexpr double kNoTimeToTurn_s = 0.1;   // longest time between the frames of a jump
 constexpr double kLongestExchange_s = 2;  // between two jumps: beyond, one in between was not seen
 
 // What to do with a cluster, frame by frame.
@@ -124,8 +124,8 @@ class LabelFinder {
     }
   }
 
-  // Whether each marker of a frame is where one was in an earlier frame, and not each where it was
-  // itself.
+  // Whether each marker of a frame is in the place of a marker of an earlier frame, and some are
+  // not in their own places.
   bool Jump(int before, int frame) const {
     const double near = kSamePlace * shape_.distances.minCoeff();
     const auto is_where = [&](int now, int earlier) {
@@ -247,7 +247,8 @@ bool IsRemoved(const Plan& plan, const ClusterShape& shape, int frame, int i) {
   return plan.removed[shape.permutations[plan.order[frame]][i]][frame];
 }
 
-// Labels of a cluster that are off beside its others in most of the frames that show them.
+// Labels of a cluster that, in most of the frames that show them, do not fit although others of the
+// cluster do.
 std::vector<int> OffMostly(const LabelFinder& finder, const Plan& plan) {
   const ClusterShape& shape = finder.shape();
   const auto fits = [&](int frame, int i) {

@@ -15,21 +15,20 @@ namespace elastocal {
 /// Markers on one rigid part, whose labels the cameras' software may exchange.
 struct LabelCluster {
   std::string name;
-  std::vector<int> markers;  ///< of the trajectories' names
+  std::vector<int> markers;  ///< indices into the trajectories' names
 };
 
-/// Distances between markers of a cluster by their names, the first of which comes first in the
-/// cluster, m.
+/// Distances between two markers of a cluster, m, by their names in the order of the cluster.
 using PairDistances = std::map<std::pair<std::string, std::string>, double>;
 
 struct LabelOptions {
-  double tolerance_sd = 6.0;  ///< a distance is wrong if it is off by more standard deviations
+  double tolerance_sd = 6.0;  ///< tolerance of a distance in standard deviations
   double least_tolerance_m =
-      0.0015;  ///< ... and by more than this: errors of cameras vary in space
+      0.0015;  ///< least tolerance of a distance, m: errors of cameras vary in space
   /// Labels are corrected only if every other order changes some distance by this many tolerances.
   /// Above 2, no frame can fit two orders.
   double least_separation = 2.5;
-  PairDistances usual = {};  ///< as other trials show them (MeasureShape)
+  PairDistances usual = {};  ///< distances that other trials show (MeasureShape)
 };
 
 /// Frames in which labels were exchanged, now corrected.
@@ -41,12 +40,12 @@ struct SwappedLabels {
 /// Frames in which a marker was set to NaN because its distances to the others were wrong.
 struct OutlyingMarker {
   FrameInterval frames;
-  int marker = 0;  ///< of the trajectories' names
+  int marker = 0;  ///< index into the trajectories' names
 };
 
 struct ClusterLabels {
   std::string name;
-  std::vector<int> markers;  ///< of the trajectories' names, in the order of the cluster
+  std::vector<int> markers;  ///< indices into the trajectories' names, in the order of the cluster
   /// Exchanged labels cannot be corrected with certainty, because the cluster has only one or two
   /// markers or its distances are too much alike. Positions that look exchanged are then removed
   /// like outliers.

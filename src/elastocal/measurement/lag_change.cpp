@@ -12,10 +12,10 @@
 namespace elastocal {
 namespace {
 
-constexpr int kLeastBlocks = 12;        // whose scatter tells a standard deviation
+constexpr int kLeastBlocks = 12;        // fewer do not tell a standard deviation
 constexpr int kWeightings = 4;          // rounds of weights and estimates
 constexpr double kLeastFollowed = 0.5;  // share of a marker's motion that the log must explain
-constexpr double kFloor_m = 0.05e-3;    // what is left of a marker weighs no better than this
+constexpr double kFloor_m = 0.05e-3;    // added in squares to a marker's residual in its weight
 constexpr Eigen::Index kLeastMoments = 20;
 
 using Indices = std::vector<Eigen::Index>;
@@ -23,8 +23,8 @@ using Indices = std::vector<Eigen::Index>;
 // One marker in the moments in which it is seen. Rows: x, y, z of the first of these, and so on.
 struct Equations {
   Indices moments;
-  std::vector<int> unknowns;  // of all: those of its shapes, then level and slope of the lag
-  Eigen::MatrixXd rows;       // derivatives by these
+  std::vector<int> unknowns;  // unknowns of its shapes, then level and slope of the lag
+  Eigen::MatrixXd rows;       // derivatives by `unknowns`
   Eigen::VectorXd off;        // measured minus predicted
   double variation = 0.0;     // of the measured coordinates about their means, m^2
   Eigen::MatrixXd normal;     // rows^T rows
@@ -77,7 +77,7 @@ class Estimate {
     unknowns_.setZero(motion.prior_sd.size() + lags);
   }
 
-  // One round; false where the motion does not tell the lag.
+  // Weights the markers and solves for all unknowns; false if the motion does not tell the lag.
   bool Solve() {
     const Eigen::Index count = unknowns_.size();
     Eigen::MatrixXd N = Eigen::MatrixXd::Zero(count, count);
@@ -98,7 +98,7 @@ class Estimate {
            by_lag_.bottomRows(lags_).diagonal().minCoeff() > 0.0;
   }
 
-  // Leaves out markers most of whose motion is not what the log says.
+  // Leaves out markers of whose motion the model explains less than `kLeastFollowed`.
   void LeaveOutStrangers() {
     std::erase_if(equations_, [&](const Equations& of) {
       return SquaresLeft(of) > (1.0 - kLeastFollowed) * of.variation;
@@ -117,7 +117,7 @@ class Estimate {
   bool empty() const { return equations_.empty(); }
   Eigen::VectorXd lag() const { return unknowns_.tail(lags_); }
 
-  // Of the lag, by the scatter over blocks of time of what each adds to its estimate.
+  // Covariance of the lag, by the scatter of the contributions of blocks of time to its estimate.
   std::optional<Eigen::MatrixXd> Covariance(double block_s) const {
     const double start_s = motion_.time_s[0];
     const double length_s = motion_.time_s[motion_.time_s.size() - 1] - start_s;
@@ -146,7 +146,7 @@ class Estimate {
 
   const MarkerMotion& motion_;
   std::vector<Equations> equations_;
-  Eigen::Index lags_;  // 1: the level; 2: and the slope
+  Eigen::Index lags_;  // 1: the level only; 2: level and slope
   std::vector<double> weights_;
   Eigen::VectorXd unknowns_;
   Eigen::MatrixXd by_lag_;  // columns of the inverse of the normal matrix

@@ -13,18 +13,18 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastMotion = 0.05;  // rad or m: range of a joint that can be wrong
-constexpr double kLeastPeak = 0.9;     // what is right correlates well
-constexpr double kFitsAsItIs = 0.999;  // correlation of a log that only noise keeps from one
-constexpr double kFarBetter = 0.25;    // of what a correlation lacks to one is left
-constexpr int kFewestMoved = 3;        // columns: of two, they are exchanged
+constexpr double kLeastPeak = 0.9;     // least correlation of a log that is right
+constexpr double kFitsAsItIs = 0.999;  // above this correlation, only noise is left
+constexpr double kFarBetter = 0.25;    // largest share that is left of 1 - correlation
+constexpr int kFewestMoved = 3;        // columns: two that are shifted are exchanged
 constexpr double kLeastFrozen_s = 2.0;
 constexpr double kJumpSpreads_s = 1.2;       // the filter spreads the jump at either end
 constexpr double kPartFits = 0.9;            // correlation in a part of the log that is not wrong
-constexpr double kAboutAsLikely = 0.9;       // of the best correlation: a lag that may be right
-constexpr double kNearer = 0.9;              // of the distances of markers: clearly nearer
+constexpr double kAboutAsLikely = 0.9;       // share of the best peak: both lags are possible
+constexpr double kNearer = 0.9;              // largest ratio of residuals of positions
 constexpr std::size_t kMostByPositions = 6;  // mistakes whose positions are compared
 
-/// By coordinate: whether the joint is between the standing link and a marker.
+/// For each coordinate, whether its joint is between the root link and a marker.
 std::vector<char> OnTheWay(const MarkedRobot& robot, const std::vector<int>& markers) {
   std::vector<char> on_way(robot.tree.coordinate_count(), 0);
   for (int m : markers) {
@@ -45,7 +45,7 @@ bool Moves(const SmoothedLog& log, int column) {
   return highest - lowest > kLeastMotion;
 }
 
-/// Joints that move and are between the standing link and a marker.
+/// Columns of joints that move and are between the root link and a marker.
 std::vector<int> MovingColumns(const MarkedRobot& robot, const std::vector<int>& markers,
                                const SmoothedLog& log, const std::vector<int>& coordinates) {
   const std::vector<char> on_way = OnTheWay(robot, markers);
@@ -56,7 +56,8 @@ std::vector<int> MovingColumns(const MarkedRobot& robot, const std::vector<int>&
   return moving;
 }
 
-/// Columns side by side whose joints carry each other, in both directions by one.
+/// All runs of neighbouring columns whose joints follow each other in a limb, each shifted by one
+/// in both directions.
 std::vector<LogMistake> MovedBlocks(const MarkedRobot& robot, const std::vector<int>& markers,
                                     const std::vector<int>& coordinates, int count) {
   const RobotTree& tree = robot.tree;
@@ -64,7 +65,7 @@ std::vector<LogMistake> MovedBlocks(const MarkedRobot& robot, const std::vector<
   const auto joint_of = [&](int c) -> const Joint& {
     return tree.joints[tree.coordinate_joint[coordinates[c]]];
   };
-  const auto carries = [&](int c) {  // the joint of column c that of the next one
+  const auto carries = [&](int c) {  // whether the joint of column c carries that of the next one
     return on_way[coordinates[c + 1]] != 0 &&
            joint_of(c + 1).parent_body == tree.links[joint_of(c).child_link].body;
   };
@@ -81,8 +82,8 @@ std::vector<LogMistake> MovedBlocks(const MarkedRobot& robot, const std::vector<
   return blocks;
 }
 
-/// Robot time from and to which a joint is logged in one place while others move by half a radian
-/// in all, the longest such part; twice the same where there is none.
+/// Begin and end, in robot time, of the longest part of the log in which a joint stays in one place
+/// while the others move by `kOthersMoved` in all; equal if there is none.
 std::pair<double, double> LongestStill(const SmoothedLog& log, const std::vector<int>& columns,
                                        int column) {
   constexpr double kStill = 2e-5;       // rad or m
@@ -109,7 +110,7 @@ std::pair<double, double> LongestStill(const SmoothedLog& log, const std::vector
   return longest;
 }
 
-/// The log with a hole.
+/// The log without the part from `begin_s` to `end_s`, robot time.
 SmoothedLog WithoutSpan(const SmoothedLog& log, double begin_s, double end_s) {
   SmoothedLog left = log;
   left.pieces.clear();
@@ -131,8 +132,8 @@ SmoothedLog WithoutSpan(const SmoothedLog& log, double begin_s, double end_s) {
   return left;
 }
 
-/// Correlation of the speeds from `begin_s` to `end_s` of the robot's time, each moment's mean over
-/// the markers that are seen then.
+/// Correlation of measured and logged speeds from `begin_s` to `end_s` of the robot's time. At each
+/// moment, both speeds are means over the markers that are seen then.
 double CorrelationOfPart(const LoggedSpeeds& logged, const Eigen::MatrixXd& measured,
                          double rate_hz, const ClockFit& clock, double begin_s, double end_s) {
   std::vector<double> by_log, by_cameras;
@@ -162,7 +163,8 @@ struct Candidate {
   ClockFit fit;
 };
 
-/// The one of the best correlation or, of several, with which positions leave least (`left_by`).
+/// Of the candidates with the best correlations (at most `kMostByPositions`), the one with the
+/// smallest residuals of positions (`left_by`).
 template <typename LeftBy>
 std::optional<Candidate> BestByPositions(std::vector<Candidate> candidates, const LeftBy& left_by) {
   if (candidates.empty()) return std::nullopt;
@@ -182,8 +184,7 @@ std::optional<Candidate> BestByPositions(std::vector<Candidate> candidates, cons
   return *best;
 }
 
-/// The clock or, where two lags are about as likely, that of the one at which positions leave
-/// least.
+/// The clock or, if two lags are about as likely, the one with the smaller residuals of positions.
 template <typename LeftBy>
 ClockFit NearestClock(const SmoothedLog& log, const ClockFit& clock, const LeftBy& left_by) {
   if (!(clock.second_peak > kAboutAsLikely * clock.peak)) return clock;

@@ -11,27 +11,37 @@ namespace elastocal {
 
 /// What is wrong with the columns of a joint log.
 struct LogMistake {
-  int column = 0;     ///< of the log's joints
-  int exchanged = 0;  ///< with this one; `column` itself: its sign is reversed, or it is frozen
-  double peak = 0.0;  ///< correlation of speeds (ClockFit) once that is undone
-  double frozen_from_s = 0.0, frozen_to_s = 0.0;  ///< of the robot's time; equal: it is not
-  /// From `column` to `exchanged` each joint has the column of the joint so many further, in a
-  /// ring; 0: they are not moved.
+  int column = 0;  ///< index into the log's joints
+  /// The column with which `column` is exchanged. If it is `column` itself, the sign of `column` is
+  /// reversed, or its positions are frozen.
+  int exchanged = 0;
+  double peak = 0.0;  ///< correlation of speeds (ClockFit) once the mistake is undone
+  double frozen_from_s = 0.0, frozen_to_s = 0.0;  ///< robot time; equal if nothing is frozen
+  /// If not 0, the columns from `column` to `exchanged` are shifted in a ring: each joint's
+  /// positions are in the column that is so many further.
   int moved = 0;
 };
 
-/// What is wrong with a log whose clock cannot be told: the reversed sign of one joint, exchange of
-/// two, or columns of a limb (or of a part of it, three joints and more) all moved by one. Undone,
-/// it lets the clock be told, with the best correlation, which must be far better than that of
-/// `clock`, which is by the log as it is (a quarter of what it lacks to 1). Speeds do not tell
-/// which of two joints with parallel axes turns the other way, nor which way a motion there and
-/// back goes (another joint, one posture later, may be as fast); the positions in `trajectories`
-/// do, which must leave least, and less than by the log as it is. Or it is a joint that is logged
-/// in exactly the same place for two seconds or more, in which others move by half a radian, while
-/// the rest of the log tells the clock as well, by which that part is not what the cameras saw
-/// (joints that are moved one after the other stand still for long). `speeds` and `logged` as for
-/// EstimateTrialClock, `markers` to `coordinates` as for PredictSpeeds. Joints that hardly move are
-/// passed over.
+/// Finds what is wrong with the columns of a log whose clock cannot be told. `clock` is the clock
+/// by the log as it is; if its correlation is above 0.999, nothing is tried.
+///
+/// These mistakes are tried: the reversed sign of one joint, two exchanged joints, and three or
+/// more neighbouring columns of one limb that are all shifted by one. Once undone, a mistake must
+/// make the clock reliable, with a correlation of at least 0.9 that lacks at most a quarter of what
+/// that of `clock` lacks to 1. Speeds do not tell which of two joints with parallel axes is
+/// reversed, nor the direction of a motion there and back. Of the six mistakes with the best
+/// correlations, the one with the smallest residuals of positions (LeftByPositions) is therefore
+/// taken, and these must be below 0.9 times those of the log as it is.
+///
+/// A joint is frozen if its logged position changes by less than 2e-5 rad (m) for 2 s or more,
+/// while the other joints move by 0.5 rad (m) in all. The rest of the log must tell the clock as
+/// well as above, with smaller residuals of positions, and by this clock the correlation in the
+/// frozen part must be at most 0.9: joints that are moved one after the other also stand still for
+/// long. A frozen joint is returned if its correlation is better than that of the other mistakes.
+///
+/// `speeds` is `measured` of EstimateTrialClock; `markers` to `coordinates` are as for
+/// PredictSpeeds. Signs, exchanges and frozen positions are tried only of joints that move by more
+/// than 0.05 rad (m) and are between the root link and a marker.
 std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::vector<int>& markers,
                                          const std::vector<int>& standing, const SmoothedLog& log,
                                          const std::vector<int>& coordinates,
@@ -40,19 +50,20 @@ std::optional<LogMistake> FindLogMistake(const MarkedRobot& robot, const std::ve
                                          const std::optional<double>& expected_lag_s,
                                          const ClockOptions& options, const ClockFit& clock);
 
-/// "sign:arm_7_joint", "exchange:a,b", "frozen:a"; `names`: of the columns.
+/// Name of a mistake as a correction is stated: "sign:arm_7_joint", "exchange:a,b", "frozen:a".
+/// `names` are the names of the columns.
 std::string NameOf(const LogMistake& mistake, const std::vector<std::string>& names);
 
-/// The signs and exchanges of columns among mistakes of these names.
+/// The reversed signs and exchanged columns among the named mistakes (NameOf).
 std::vector<LogMistake> MistakesOf(const std::vector<std::string>& mistakes,
                                    const std::vector<std::string>& names);
 
-/// The log with a sign reversed, two joints exchanged or columns moved back; as it is with a frozen
-/// joint.
+/// The log with a mistake undone: a sign reversed, two joints exchanged or columns shifted back. A
+/// frozen joint cannot be undone; the log then stays as it is.
 SmoothedLog WithoutMistake(SmoothedLog log, const LogMistake& mistake);
 
-/// Two joints of these columns that move, and that are logged in the same places, number for
-/// number; in words, else empty.
+/// One sentence about two joints whose columns are copies of each other, number for number, and
+/// move; empty if there are none.
 std::string DescribeCopies(const SmoothedLog& log, const std::vector<std::string>& names);
 
 /// "with the sign of arm_7_joint reversed the log fits (correlation 0.99)"; `names`: of the

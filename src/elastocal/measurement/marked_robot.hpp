@@ -20,7 +20,7 @@ struct MarkedRobot {
   std::vector<LabelCluster> clusters;  ///< of `markers`
   std::vector<int> torque_sensors;     ///< joints whose logged torques are measured
   Eigen::VectorXd
-      q_not_logged;  ///< by coordinate, rad or m: positions of joints that are not logged
+      q_not_logged;  ///< for each coordinate, rad or m: positions of joints that are not logged
 };
 
 /// For each joint of a log, its coordinate of the robot tree. Throws InputError for a joint that

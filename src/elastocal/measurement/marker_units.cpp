@@ -20,8 +20,8 @@ struct Mate {
   double distance = 0.0;    ///< by the project, m
 };
 
-/// How far the distances to the mates are from the project's, where the coordinates in `column` are
-/// multiplied by a factor; median, m. NaN where they are never seen together.
+/// Median error of the distances to the mates, against the project, with the coordinates in
+/// `column` multiplied by a factor, m. NaN if they are never seen together.
 double OffMates(const Eigen::MatrixXd& positions, Eigen::Index column,
                 const std::vector<Mate>& mates, double factor) {
   const Eigen::Index step = 1 + (positions.rows() - 1) / kMostRows;
@@ -37,7 +37,7 @@ double OffMates(const Eigen::MatrixXd& positions, Eigen::Index column,
   return Median(off);
 }
 
-/// Markers by column; nullptr for a name that the robot has not.
+/// For each name, the robot's marker; nullptr if the robot has none of this name.
 std::vector<const Marker*> MarkersOf(const std::vector<std::string>& names,
                                      const std::vector<Marker>& robot) {
   std::vector<const Marker*> known;
@@ -49,14 +49,14 @@ std::vector<const Marker*> MarkersOf(const std::vector<std::string>& names,
   return known;
 }
 
-/// Measured and nominal distance of two markers of a link, m: medians.
+/// Measured (median) and nominal distance of two markers of one link, m.
 struct PairOfMarkers {
   double measured = 0.0, nominal = 0.0;
 };
 
 std::vector<PairOfMarkers> PairsOnLinks(const Eigen::MatrixXd& positions,
                                         const std::vector<const Marker*>& known) {
-  constexpr double kShort = 0.03;  // m: shorter ones are as uncertain as the project's positions
+  constexpr double kShort = 0.03;  // m: errors of nominal positions are as large as this
   const Eigen::Index step = 1 + (positions.rows() - 1) / kMostRows;
   std::vector<PairOfMarkers> pairs;
   for (std::size_t m = 0; m < known.size(); ++m) {
@@ -79,11 +79,11 @@ std::vector<PairOfMarkers> PairsOnLinks(const Eigen::MatrixXd& positions,
 
 constexpr double kUnitFactors[] = {1000.0, 1e-3, 100.0, 1e-2, 10.0, 0.1, 25.4, 1.0 / 25.4};
 
-/// All markers, by the distances of those of one link.
+/// A wrong unit of all markers, by the distances between markers of one link.
 std::optional<OtherUnit> FindUnitOfAll(const std::vector<PairOfMarkers>& pairs) {
   constexpr std::size_t kFewestPairs = 3;
-  constexpr double kAlike = 1.3;      // of a ratio and a unit
-  constexpr double kMostShare = 0.8;  // of the pairs, that one unit explains
+  constexpr double kAlike = 1.3;      // largest ratio of a distance in the right unit to nominal
+  constexpr double kMostShare = 0.8;  // least share of the pairs that one unit explains
   if (pairs.size() < kFewestPairs) return std::nullopt;
   for (const double factor : kUnitFactors) {
     const auto explained = std::count_if(pairs.begin(), pairs.end(), [&](const PairOfMarkers& of) {

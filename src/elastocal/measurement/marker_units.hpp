@@ -11,23 +11,27 @@
 
 namespace elastocal {
 
-/// A marker whose coordinates are in another unit than those of the others, or all markers whose
-/// coordinates are in another unit than they were read in.
+/// A wrong unit of length: one marker's coordinates are in another unit than those of the others,
+/// or all coordinates are in another unit than the one in which they were read.
 struct OtherUnit {
-  std::string marker;   ///< empty: all
-  double factor = 1.0;  ///< by which they are to be multiplied
-  /// How far the marker is from the distances that the project gives to others of its link, m; of
-  /// all, the first distance of two on one link.
+  std::string marker;   ///< name of the marker; empty: all markers
+  double factor = 1.0;  ///< by which the coordinates are to be multiplied
+  /// For one marker: median error of its distances to others of its link, against the project, m.
+  /// For all markers: measured distance of the first pair of markers on one link, m.
   double before = 0.0;
-  double after = 0.0;  ///< the same, multiplied; of all, what the project has
+  /// For one marker: the same error after multiplication. For all markers: the distance of the
+  /// first pair in the project, m.
+  double after = 0.0;
 };
 
-/// Looks for one in positions (rows x 3 markers, m; NaN where not seen) of markers of these names:
-/// its distances to at least two others of its link are 100 mm and more off those of `robot`, by
-/// the median, and 30 mm at most, a tenth of it, once its coordinates are multiplied by 10, 100,
-/// 1000, 25.4 or divided by one of these. All are in another unit where one of these factors
-/// explains, within 30 %, four in five of the distances of markers on one link (of which there are
-/// three or more, of 30 mm or more).
+/// Finds a wrong unit in `positions` (rows x 3 markers, m; NaN where not seen) of markers with
+/// these names. `robot` has the nominal markers. The factors that are tried are 10, 100, 1000, 25.4
+/// and their inverses.
+/// - All markers are in another unit if, with one factor, at least four in five of the distances
+///   between markers of one link are within 30 % of the nominal ones. At least three distances of
+///   30 mm or more are needed.
+/// - One marker is in another unit if the median error of its distances to the others of its link
+///   (at least two) is above 100 mm, and with one factor is below 30 mm and below a tenth of that.
 std::optional<OtherUnit> FindOtherUnit(const Eigen::MatrixXd& positions,
                                        const std::vector<std::string>& names,
                                        const std::vector<Marker>& robot);

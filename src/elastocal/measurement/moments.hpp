@@ -7,16 +7,17 @@
 
 namespace elastocal {
 
-/// The motion that each posture is a moment of, numbered from 0; -1: of none. Two postures that
-/// follow each other are moments of one motion in a trial whose samples are those of a motion, and
-/// in a table of postures with times if less than half a second is between them. What the model
-/// does not explain hardly changes from one to the other.
+/// For each posture, the number (from 0) of the motion of which it is a moment; -1 if it is a rest.
+/// Two successive postures with rising times are moments of one motion if they are in one trial of
+/// motion (Trial::of_motion) or, in a posture table, less than 0.5 s apart. Residuals of successive
+/// moments of a motion are nearly equal. Without times, no posture is a moment.
 std::vector<int> MotionOfPostures(const Recording& recording);
 
 /// Whether any posture is a moment of a motion.
 bool HasMotion(const Recording& recording);
 
-/// The postures of a trial, ascending; all of a table of postures, which has no trials.
+/// Indices of the postures of a trial, ascending; all postures of a posture table, which has no
+/// trials.
 std::vector<int> PosturesOfTrial(const Recording& recording, int trial);
 
 }  // namespace elastocal

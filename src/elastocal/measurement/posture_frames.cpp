@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMoved = 2e-3;  // rad or m
 
-// Markers that are seen in all of the frames.
+// Number of markers that are seen in all of the frames.
 int MarkersSeen(const MarkerTrajectories& trajectories, const std::vector<int>& frames) {
   int seen = 0;
   for (int marker = 0; marker < trajectories.marker_count(); ++marker) {

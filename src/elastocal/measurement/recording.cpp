@@ -107,7 +107,7 @@ Recording EvenlyThinned(const Recording& recording, int most) {
 
 namespace {
 
-/// One below the other; what one of them does not have is NaN.
+/// Stacks two matrices, one below the other; rows and columns that one of them lacks are NaN.
 Eigen::MatrixXd Stacked(const Eigen::MatrixXd& above, int rows_above, const Eigen::MatrixXd& below,
                         int rows_below) {
   if (above.rows() == 0 && below.rows() == 0) return {};

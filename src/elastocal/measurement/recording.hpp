@@ -21,8 +21,8 @@ struct Trial {
   /// root link is held still, unless it is free.
   std::vector<int> support = {};
   bool free_root = false;  ///< nothing ties the robot to the floor
-  bool moments = false;  ///< its samples are moments of a motion, as those of a sine are, not rests
-  int session = 0;       ///< which of the folders given it is from
+  bool moments = false;    ///< its samples are moments of a motion, as in a sine trial, not rests
+  int session = 0;         ///< number of the recording folder that it is from
 
   bool of_motion() const { return moments || kind == TrialKind::kSine; }
 };
@@ -50,11 +50,11 @@ struct Recording {
   std::vector<int> wrench_links;
   Eigen::MatrixXd wrenches;
   std::vector<Trial> trials;  ///< empty for a posture table
-  bool free_root = false;     ///< of a posture table: the root may stand elsewhere in each posture
-  std::vector<int> trial;     ///< for each posture, index into `trials`; empty if that is
+  bool free_root = false;     ///< posture table: the root link has another pose in each posture
+  std::vector<int> trial;     ///< for each posture, index into `trials`; empty if `trials` is
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< in the frame of `markers`, m/s^2
-  /// postures x coordinates of q: direction of the last motion of each, -1 or 1; 0 where unknown.
-  /// No rows: nothing known. See NoteApproach.
+  /// postures x coordinates of q: direction of the last motion of each coordinate, -1 or 1; 0 where
+  /// unknown. No rows if nothing is known. NoteApproach fills it.
   Eigen::MatrixXd approach;
   Eigen::VectorXd time_s;   ///< of each posture, for trials on the cameras' clock; may be empty
   std::vector<int> frames;  ///< number of frames of which each posture is the mean; empty: one each
@@ -64,8 +64,8 @@ struct Recording {
   int marker_count() const { return static_cast<int>(marker_names.size()); }
 };
 
-/// The direction of gravity, 9.81 m/s^2, where this axis points up. Throws std::invalid_argument
-/// for a text that IsAxis refuses.
+/// The vector of gravity (9.81 m/s^2) in a frame in which the axis `up` points upwards. Throws
+/// std::invalid_argument for a text that IsAxis refuses.
 Eigen::Vector3d GravityBelow(const std::string& up);
 
 /// Whether the text is one of x, y, z, -x, -y and -z.
@@ -77,30 +77,32 @@ bool Seen(const Recording& recording, int posture, int marker);
 /// Measured position of a marker, m.
 Eigen::Vector3d MarkerPosition(const Recording& recording, int posture, int marker);
 
-/// Whether the pose of the root link is an unknown of each posture, and not one of all (T0).
+/// Whether the root link has an unknown pose in each posture, and not one pose in all (T0).
 bool HasPoseByPosture(const Recording& recording);
 
 /// Whether nothing ties the root link of a posture to the floor.
 bool HasFreeRoot(const Recording& recording, int posture);
 
-/// Whether this holds for all postures.
+/// Whether the root link is free in all postures; false without postures.
 bool HasFreeRoot(const Recording& recording);
 
-/// Fills `approach` from the order of the postures, of trials within each: a joint that did not
-/// move came to where it is as before.
+/// Fills `approach` from the order of the postures within each trial (or in the whole table). A
+/// joint that did not move (by more than 2e-3 rad or m) keeps the direction of its last motion.
 void NoteApproach(Recording& recording);
 
-/// The same of a table: direction of the last motion of each coordinate, rows being reached from
-/// the row before where both are of one part (`part`: by row; empty: one part).
+/// Direction of the last motion of each coordinate, -1 or 1, in a table of positions (rows x
+/// coordinates); 0 where unknown. A row is reached from the row before it if both belong to one
+/// part. `part` has one number for each row; empty: all rows are one part.
 Eigen::MatrixXd ApproachesOf(const Eigen::MatrixXd& q, const std::vector<int>& part);
 
 /// The given postures of a recording, in the given order.
 Recording SelectPostures(const Recording& recording, const std::vector<int>& postures);
 
-/// At most so many of its postures, evenly.
+/// At most `most` (> 0) postures of a recording, evenly spaced in their order.
 Recording EvenlyThinned(const Recording& recording, int most);
 
-/// The trials of two recordings of one robot, with the same markers and the same gravity, as one.
+/// Joins the trials of two recordings of one robot with the same markers and the same gravity.
+/// Times and lines of the postures are dropped; wrenches too, unless both have the same sensors.
 Recording JoinTrials(const Recording& first, const Recording& second);
 
 }  // namespace elastocal

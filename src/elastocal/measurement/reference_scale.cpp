@@ -21,8 +21,8 @@ double MedianOf(std::vector<double>& values) {
 std::optional<MeasuredScale> ScaleBy(const ReferenceLength& reference,
                                      const MarkerTrajectories& trajectories) {
   constexpr std::size_t kFewestFrames = 10;
-  constexpr double kSdOfMedian = 1.4826 * 1.2533;  // of a normal distribution, from deviations
-  constexpr double kShared = 10.0;                 // frames that have their errors in common
+  constexpr double kSdOfMedian = 1.4826 * 1.2533;  // normal distribution: median, by the MAD
+  constexpr double kShared = 10.0;                 // frames that count as one independent frame
   std::array<Eigen::Index, 2> column{};
   for (std::size_t end = 0; end < 2; ++end) {
     const auto found = std::find_if(

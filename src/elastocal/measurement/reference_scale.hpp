@@ -18,7 +18,7 @@ struct ReferenceLength {
   double sd = 0.0;                     ///< of the length, m
 };
 
-/// By how much the cameras measure lengths too long.
+/// Scale error of the cameras: by how much they measure lengths too long.
 struct MeasuredScale {
   double size = 0.0;  ///< measured over true, less 1
   double sd = 0.0;
@@ -35,7 +35,8 @@ std::optional<MeasuredScale> MeasureScale(const std::vector<ReferenceLength>& re
 /// Whether a label of a file is that of a reference marker.
 bool IsReferenceMarker(const std::vector<ReferenceLength>& references, const std::string& label);
 
-/// Whether this is more than good cameras do: 0.05 % and 4.5 standard deviations.
+/// Whether the scale error is larger than that of good cameras: by more than 0.05 % and by more
+/// than 4.5 standard deviations.
 bool IsWrong(const MeasuredScale& scale);
 
 /// "1.00502 +- 0.00012"

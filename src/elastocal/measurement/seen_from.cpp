@@ -9,8 +9,8 @@
 namespace elastocal {
 namespace {
 
-/// Columns of the trajectories by the body that carries the marker, those nearest to the root
-/// first.
+/// Markers (as indices into the trajectories) by the body that carries them, bodies nearest to the
+/// root first.
 std::map<std::pair<std::size_t, int>, std::vector<int>> ByBody(const MarkedRobot& robot,
                                                                const std::vector<int>& markers) {
   std::map<std::pair<std::size_t, int>, std::vector<int>> columns;
@@ -42,7 +42,8 @@ Eigen::Matrix3Xd NominalPositions(const MarkedRobot& robot, const std::vector<in
   return positions;
 }
 
-/// The trajectories in the frame of a body, which its markers tell, `nominal` positions on it.
+/// The trajectories in the frame of a body, whose pose the markers `placing` tell; `nominal` are
+/// their positions in that frame.
 MarkerTrajectories InBody(const std::vector<int>& placing, const Eigen::Matrix3Xd& nominal,
                           MarkerTrajectories trajectories) {
   for (int frame = 0; frame < trajectories.frame_count(); ++frame) {

@@ -9,18 +9,18 @@
 
 namespace elastocal {
 
-/// Where the root link is free, nothing of the robot stands still in the laboratory. What its
-/// joints do is seen from a link instead.
+/// Trajectories in the frame of one of the robot's links. They show the motion of the joints if the
+/// root link is free, so that no link stands still in the laboratory.
 struct SeenFrom {
   int link = 0;
-  /// In the frame of `link`, up to a constant pose. NaN for the markers on its own body, and in
-  /// frames in which some of these are not seen.
+  /// Trajectories in the frame of `link`, up to a constant pose. NaN for the markers on its own
+  /// body, and in frames in which some of these are not seen.
   MarkerTrajectories trajectories;
 };
 
-/// The trajectories (of the robot's markers `markers`) as seen from the body nearest to the root
-/// that carries three of them which tell its pose. Nothing if there is no such body, or no marker
-/// elsewhere.
+/// Expresses trajectories (of the robot's markers `markers`) in the frame of the body nearest to
+/// the root whose markers tell its pose (TellPose). Nothing if there is no such body, or if it
+/// carries all markers.
 std::optional<SeenFrom> SeeFromMarkedBody(const MarkedRobot& robot, const std::vector<int>& markers,
                                           const MarkerTrajectories& trajectories);
 

@@ -37,10 +37,10 @@ void ForEachPair(const TrialSummary& trial, const Use& use) {
 
 struct PairSightings {
   std::vector<double> distances;
-  double tolerance = 0.0;  ///< the largest
+  double tolerance = 0.0;  ///< largest tolerance of the trials, m
 };
 
-/// The distance of most trials.
+/// The distance on which more than half of the trials agree, of at least `kLeastTrials`.
 std::optional<double> MostFrequent(const PairSightings& of) {
   if (of.distances.size() < kLeastTrials) return std::nullopt;
   const double most = DensestMedian(of.distances, of.tolerance);
@@ -51,7 +51,8 @@ std::optional<double> MostFrequent(const PairSightings& of) {
   return most;
 }
 
-/// The distance that is less than half as far from `nominal` as those that differ from it.
+/// The distance nearest to `nominal`, if all that differ from it are at least twice as far from
+/// `nominal`.
 std::optional<double> ClearlyNearest(const PairSightings& of, double nominal) {
   const double nearest = *std::min_element(
       of.distances.begin(), of.distances.end(),

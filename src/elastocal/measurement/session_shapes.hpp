@@ -9,18 +9,19 @@
 
 namespace elastocal {
 
-/// Distances between markers of clusters that most trials agree on (at least two of three): each
-/// trial by itself takes what most of its frames show, and cannot tell a marker that was displaced
-/// in the middle of it from one that was put right, nor labels that are exchanged in all of it.
-/// Where they do not agree, the one that is clearly nearest to the distance by the project, if that
-/// is in `nominal`.
+/// The usual distances between markers of clusters, m. A trial by itself takes the distance that
+/// most of its frames show. It cannot tell a marker that was displaced in its middle from one that
+/// was put back, nor labels that are exchanged in all of it. Trials together can: the usual
+/// distance is the one on which more than half of at least three trials agree. If there is none,
+/// and the pair is in `nominal`, it is the distance nearest to the nominal one, provided that all
+/// distances that differ from it are at least twice as far from nominal. Other pairs are left out.
 PairDistances UsualDistances(const std::vector<TrialSummary>& trials, const PairDistances& nominal);
 
-/// Distances between the markers of the robot's clusters by the project.
+/// Nominal distances between the markers of the robot's clusters, m.
 PairDistances NominalDistances(const MarkedRobot& robot);
 
-/// Whether a trial took other distances than the usual ones. It is worth sampling again with
-/// LabelOptions::usual then.
+/// Whether a distance of a trial differs from the usual one by more than its tolerance. Such a
+/// trial should be sampled again with LabelOptions::usual.
 bool DiffersFromUsual(const TrialSummary& trial, const PairDistances& usual);
 
 }  // namespace elastocal

@@ -90,7 +90,7 @@ struct Stretch {
 std::vector<Stretch> SplitByState(const std::vector<FrameSpeed>& frames, double threshold,
                                   double least_visible) {
   std::vector<Stretch> stretches;
-  double largest = 0.0;  // of the last stretch
+  double largest = 0.0;  // largest speed of the last stretch
   for (int i = 0; i < static_cast<int>(frames.size()); ++i) {
     State state = State::kUnseen;
     if (frames[i].visible >= least_visible) {

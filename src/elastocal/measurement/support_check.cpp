@@ -14,19 +14,19 @@ namespace elastocal {
 namespace {
 
 constexpr double kDisplaced = 0.02;   // m: no foot slips so far
-constexpr double kAtRest = 0.005;     // m
-constexpr double kOftenMoved = 0.25;  // of the frames
-constexpr int kMostLooked = 500;      // looked at
+constexpr double kAtRest = 0.005;     // m: a link at rest stays within this distance
+constexpr double kOftenMoved = 0.25;  // share of the frames in which a support has moved
+constexpr int kMostLooked = 500;      // frames that are looked at
 constexpr std::size_t kLeastLooked = 10;
-constexpr double kFurther = 1.5;  // the joints of one chain than those of another
+constexpr double kFurther = 1.5;  // ratio of the travel of two chains: one clearly moves more
 
 double MedianAlong(const std::vector<double>& values) {
   return Median(
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
 }
 
-/// In each frame looked at in which a marker of the body is seen: the median distance of these
-/// markers from where each mostly is.
+/// For each frame looked at that shows a marker of the body, the median distance of these markers
+/// from their usual positions, m.
 std::vector<double> BodyDistances(const RobotTree& tree, const std::vector<Marker>& markers,
                                   int body, const MarkerTrajectories& trajectories) {
   const int stride = 1 + trajectories.frame_count() / kMostLooked;
@@ -55,13 +55,13 @@ std::vector<double> BodyDistances(const RobotTree& tree, const std::vector<Marke
   return distances;
 }
 
-/// The same of a body that may turn about a ball near the support link's origin: the distance of
-/// the ball from where it mostly is, in each frame looked at in which the markers tell the body's
-/// pose.
+/// The same for a body that may turn about a ball near the support link's origin: for each frame
+/// looked at in which the markers tell the body's pose, the distance of the ball from its usual
+/// position, m.
 std::vector<double> PivotDistances(const RobotTree& tree, const std::vector<Marker>& markers,
                                    int support, const MarkerTrajectories& trajectories) {
   constexpr double kNear = 1e-3;     // weight of the distance from the origin, per frame
-  constexpr double kFurthest = 0.4;  // of the shank: its other end, the knee, is not the ball
+  constexpr double kFurthest = 0.4;  // share of the shank's length: the ball is not at the knee
   const int body = tree.links[support].body;
   const Eigen::Vector3d origin = tree.links[support].T_body_link.translation();
   const int stride = 1 + trajectories.frame_count() / kMostLooked;
@@ -111,7 +111,8 @@ bool EndsAChain(const RobotTree& tree, int body) {
                                   [&](const Joint& joint) { return joint.parent_body == body; });
 }
 
-/// How far the joints go between the root and one body that are not also between it and the other.
+/// Sum of the travel of the joints between the root and `body` that are not between the root and
+/// `other`.
 double TravelOf(const RobotTree& tree, int body, int other, const Eigen::VectorXd& travel) {
   const std::vector<int> shared = JointsToBody(tree, other);
   double sum = 0.0;

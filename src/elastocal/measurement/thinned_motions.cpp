@@ -11,7 +11,7 @@ namespace elastocal {
 
 namespace {
 
-/// How far apart moments are of which `most` or fewer are kept.
+/// Every how many of the moments one is kept, if at most `most` are to be left.
 int StepOver(int moments, int most) { return std::max(1, (moments + most - 1) / most); }
 
 bool Differ(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, int row) {

@@ -7,14 +7,15 @@
 
 namespace elastocal {
 
-/// All postures that are held, and at most so many moments of motions, evenly: motions are sampled
-/// far more densely, so that fewer moments tell as much. A table is thinned by EvenlyThinned.
+/// Keeps all rests of a recording and at most `most` moments of motions, evenly spaced. Motions are
+/// sampled far more densely than rests, so that fewer moments tell as much. A posture table is
+/// thinned by EvenlyThinned.
 Recording WithThinnedMotions(const Recording& recording, int most);
 
-/// Postures by which a correction of a recording can be tried before all of them are: those of rest
-/// and, of the moments of motions, evenly so many of those that the correction changes and so many
-/// of the others. Empty where that is not much quicker: a quarter of the postures or more, a table,
-/// or a correction that leaves postures out.
+/// Indices of postures that suffice for a first, quick test of a correction of a recording: all
+/// rests, at most `most` moments that the correction changes, and at most `most` of the other
+/// moments, evenly spaced. Empty if these are a quarter of the postures or more, for a posture
+/// table, and if the correction changes the number of postures.
 std::vector<int> FewPostures(const Recording& recorded, const Recording& corrected, int most);
 
 }  // namespace elastocal

@@ -16,11 +16,11 @@ constexpr double kWidest_s = 600.0;  // bounds the cost of the search
 constexpr double kMostSamples = 1e8;
 constexpr double kRestWindow_s = 0.3;
 constexpr double kJump = 0.02;  // size of a jump, as a share of the mean speed's standard deviation
-constexpr double kJumpReach_s = 0.1;  // what is left out to either side of a jump
+constexpr double kJumpReach_s = 0.1;  // time that is left out on either side of a jump
 constexpr int kMostPasses = 3;
 constexpr double kSettled_s =
     5e-3;  // change of the lag that counts as none; well within a jump's reach
-constexpr double kMostUnexplained = 0.25;  // of the markers
+constexpr double kMostUnexplained = 0.25;  // largest share of the markers
 constexpr double kLeastSeen =
     0.5;  // least share of the trial in which a marker must be seen to count
 
@@ -116,9 +116,8 @@ ClockFit FitSeen(const Eigen::MatrixXd& measured, double rate_hz, const LoggedSp
   return first.state == ClockState::kAmbiguous ? first : fit;
 }
 
-// Markers of which the log explains nothing, though they move as much as the others: for a while
-// their labels were with another marker. None where they are many: then it is the log that is
-// wrong.
+// Markers whose speed the log does not explain, though they move as much as the others: their
+// labels were exchanged for a while. None if there are many of them, because then the log is wrong.
 std::vector<int> FindUnexplained(const Eigen::MatrixXd& measured, double rate_hz,
                                  const LoggedSpeeds& logged, const ClockFit& clock) {
   Eigen::ArrayXd unexplained = Eigen::ArrayXd::Zero(measured.cols());
@@ -148,9 +147,9 @@ void ChooseRange(double camera_s, const Eigen::VectorXd& log_time_s, ClockOption
   options.longest_lag_s += std::abs(half);
 }
 
-// Chooses the range of lags, and corrects the logged speeds: the length of a noisy velocity is
-// never zero. Without this the two speeds would differ at each rest, which would hide how well they
-// agree. Whether there is anything to search.
+// Chooses the range of lags, and corrects the logged speeds for noise: the length of a noisy
+// velocity is never zero. Without this the two speeds would differ at each rest, which would hide
+// how well they agree. Returns false if there is nothing to search.
 bool Prepare(const Eigen::MatrixXd& measured, double rate_hz,
              const std::optional<double>& expected_lag_s, LoggedSpeeds& logged,
              ClockOptions& options) {

@@ -28,14 +28,16 @@ LoggedSpeeds PredictSpeeds(const MarkedRobot& robot, const std::vector<int>& mar
                            const std::vector<int>& standing, const SmoothedLog& log,
                            const std::vector<int>& coordinates, double rate_hz);
 
-/// Means over the markers that are seen for half of the trial or more, and the lags to search.
+/// Mean speeds over the markers that are seen for half of the trial or more, and the range of lags
+/// to search.
 struct MeanSpeeds {
   MeasuredSpeed measured;
   PredictedSpeed logged;
   ClockOptions options;
 };
 
-/// What the first search of EstimateTrialClock compares; arguments as there. Nothing without data.
+/// The mean speeds that the first search of EstimateTrialClock compares; arguments as there.
+/// Nothing if there are no data.
 std::optional<MeanSpeeds> TakeMeanSpeeds(const Eigen::MatrixXd& measured, double rate_hz,
                                          LoggedSpeeds logged,
                                          const std::optional<double>& expected_lag_s,

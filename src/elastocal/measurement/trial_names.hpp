@@ -9,10 +9,10 @@
 
 namespace elastocal {
 
-/// Names of trials: "arms, leg_left".
+/// The names of trials in one text: "arms, leg_left".
 std::string TrialNames(const Recording& recording, const std::vector<int>& trials);
 
-/// The trials that have a posture of which this holds, ascending.
+/// Indices of the trials that have a posture for which `holds_of` is true, ascending.
 std::vector<int> TrialsWith(const Recording& recording, const std::function<bool(int)>& holds_of);
 
 }  // namespace elastocal

@@ -56,7 +56,7 @@ class TrialSampler {
   }
 
  private:
-  // Of each joint of the tree, how far it goes.
+  // For each joint of the tree, how far it moves.
   Eigen::VectorXd Travel() const {
     Eigen::VectorXd travel =
         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(robot_.tree.joints.size()));
@@ -160,7 +160,7 @@ class TrialSampler {
     std::optional<MarkerTrajectories> relative;  // without: the trajectories themselves
   };
 
-  // Seen from what stands still or, where the root is free, from a body with markers.
+  // The motion relative to the standing links or, if the root is free, to a body with markers.
   Motion MotionForClock(const Eigen::MatrixXd& speeds) const {
     if (trial_.free_root) {
       if (auto seen = SeeFromMarkedBody(robot_, markers_, trajectories_)) {
@@ -182,7 +182,7 @@ class TrialSampler {
     return options;
   }
 
-  /// Estimates the clock; why it cannot be told, or nothing.
+  /// Estimates the clock. Returns the reason if it cannot be told, else an empty text.
   std::string TellClock(const Motion& seen) {
     std::string untold = TellClockByLog(seen);
     if (options_.accepted.empty()) return untold;
@@ -195,7 +195,7 @@ class TrialSampler {
     return untold;
   }
 
-  /// Of the mistakes that the user wants undone, those without which speeds agree better.
+  /// The mistakes, of those that the user accepted, without which the speeds agree better.
   std::vector<std::string> UndoAccepted(const Motion& seen) {
     std::vector<std::string> undone;
     FitClock(seen);
@@ -248,8 +248,8 @@ class TrialSampler {
                                          options_.expected_lag_s, ClockSettings());
   }
 
-  /// There and back, speeds agree at two lags, maybe best one motion too late; positions agree at
-  /// one of them. Whether they tell it.
+  /// Chooses between two lags by positions (LagByPositions). In a motion there and back, the speeds
+  /// agree at two lags, perhaps best at the wrong one. Returns whether the positions tell the lag.
   bool TellByPositions(const Motion& seen) {
     constexpr double kAsWell = 0.99, kBothFit = 0.99, kAsLong = 0.85, kNear_s = 0.3;
     ClockFit& clock = summary().clock;

@@ -30,14 +30,15 @@ struct MeasurementOptions {
   /// With eight frames in a rest of a second, frames are far enough apart for the filtered noise to
   /// average out.
   StableSampleOptions rest = {.samples_per_run = 8};
-  /// ClockOptions::largest_sd_s for trials of rests, where the clock matters little: samples are
-  /// away from the ends of a rest by a sixteenth of it, 60 ms of a second. A trial that is refused
-  /// leaves its joints uncalibrated: up to 5/3 of it is accepted where no mistake in the log would
-  /// explain it.
+  /// Takes the place of ClockOptions::largest_sd_s in trials of rests, where the clock matters
+  /// less: samples are at least a sixteenth of a rest (60 ms of one second) away from its ends.
+  /// Because a refused trial leaves its joints uncalibrated, up to 5/3 of this value is accepted if
+  /// no mistake in the log explains the uncertainty.
   double largest_rest_lag_sd_s = 0.030;
   double sine_rate_hz = 10.0;  ///< rate of the moments taken from a motion without rests
   TorqueCheckOptions torques = {};
-  /// Mistakes of the log (NameOf) that are undone for the clock where speeds agree better then.
+  /// Mistakes of the log (NameOf) that may be undone while the clock is estimated. One is undone if
+  /// the speeds then agree better.
   std::vector<std::string> accepted = {};
 };
 
@@ -59,13 +60,13 @@ struct TrialSamples {
 ///    (CorrectLabels);
 /// 2. close short gaps; filter markers and log with the same low-pass (SmoothTrajectories,
 ///    SmoothLog);
-/// 3. estimate lag and drift of the robot's clock by the markers' speeds (EstimateTrialClock); of a
-///    motion, and where the speeds do not tell them well enough, by their positions (RefineClock);
-///    the first support foot or, without one, the root link is at rest in the laboratory; a free
-///    root moves, and the motion is seen from a body with markers (SeeFromMarkedBody);
+/// 3. estimate lag and drift of the robot's clock by the markers' speeds (EstimateTrialClock), and
+///    in trials of motion, or if the speeds do not tell them well enough, by the markers' positions
+///    (RefineClock); the first support foot or, without one, the root link is at rest in the
+///    laboratory; if the root is free, the motion is expressed in a body with markers
+///    (SeeFromMarkedBody);
 /// 4. find stable samples (FindStableSamples) or, in a trial of motion, take moments at a constant
-/// rate
-///    from the first motion to the last, both only where the robot's log covers the frame;
+///    rate from the first motion to the last, both only where the robot's log covers the frame;
 /// 5. average the samples of each rest to one posture: marker positions, and joint positions and
 ///    torques at the corresponding robot times. A marker that is not seen in all samples of a rest
 ///    is left out there, so that all markers of a posture have the same number of samples. Samples

@@ -88,7 +88,7 @@ class Finder {
     }
   }
 
-  // Markers that are off in most frames, if they are of as many clusters.
+  // Markers that are off in most frames, if no two of them are in one cluster.
   std::vector<int> OffThroughout(const std::vector<int>& frames) const {
     std::vector<int> markers;
     for (const ClusterLabels& labels : summary_.labels) {
@@ -103,7 +103,7 @@ class Finder {
     return markers;
   }
 
-  // The labels of the file that no link names and that are nearly those of missing markers.
+  // Labels of the file that the project does not have and that nearly are names of missing markers.
   std::string Misspelt() const {
     std::vector<std::string> pairs;
     for (const std::string& marker : summary_.markers_missing) {

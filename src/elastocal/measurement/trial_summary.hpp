@@ -28,11 +28,12 @@ struct TrialSummary {
   Trial trial;
   std::string markers_source, joints_source;  ///< files, for messages
   std::string refused;               ///< why nothing of the trial is used; empty: it is used
-  std::map<int, double> steps = {};  ///< in which the log has positions, by coordinate (StepOf)
+  std::map<int, double> steps = {};  ///< resolution of logged positions, by coordinate (StepOf)
   double rate_hz = 0.0;
   int frame_count = 0;
   ClockFit clock;
-  /// Mistakes of the log (NameOf) without which alone the clock was told; positions are as logged.
+  /// Mistakes of the log (NameOf) that had to be undone for the clock to be told. The positions in
+  /// the samples are as logged.
   std::vector<std::string> clock_without;
 
   int postures = 0;     ///< number of rests or, in a sine trial, of moments
@@ -52,8 +53,8 @@ struct TrialSummary {
       markers_missing;  ///< markers that take part, but are not in the file or never seen
   std::vector<std::string> markers_unknown;  ///< markers in the file that the project does not have
   std::vector<BadTorqueSensor> bad_torque_sensors;
-  std::optional<MeasuredScale> scale;  ///< by the project's reference lengths
-  bool reference_missing = false;      ///< the project has some, but none is seen in this trial
+  std::optional<MeasuredScale> scale;  ///< scale error by the project's reference lengths
+  bool reference_missing = false;      ///< the project has reference lengths, but none is seen
   std::vector<std::string> torques_missing;  ///< joints that have a sensor, but no logged torques
 };
 

@@ -13,9 +13,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kWeightKnown = 0.2;  // of it: masses of a description, gains of sensors
+constexpr double kWeightKnown = 0.2;  // relative error of a weight by masses and sensors' gains
 
-/// All feet of a recording as legs, without errors; its reference frame is that of the root link.
+/// Nominal model in which each foot of a recording is the end of a leg.
 ErrorModel LegsOf(const RobotTree& tree, const std::vector<Marker>& markers,
                   const Recording& recording) {
   std::set<int> feet;
@@ -27,8 +27,9 @@ ErrorModel LegsOf(const RobotTree& tree, const std::vector<Marker>& markers,
   return MakeErrorModel(tree, markers, {}, elasticity);
 }
 
-/// By how much a foot is pressed on the floor in a posture, N: what the torques of its leg's joints
-/// say that the waist puts on the leg (eq. 6), and the leg's own weight. NaN without one of them.
+/// Vertical force of a foot on the floor in a posture, N: the load that the waist puts on the leg,
+/// by the torques of the leg's joints (eq. 6), plus the leg's own weight. NaN if the leg has fewer
+/// than six joints or LoadFromTorques is not reliable.
 double PressOn(const ErrorModel& model, const Geometry& geometry, int leg, int posture,
                const Recording& recording) {
   const SupportLeg& on = model.legs[Size(leg)];
@@ -47,8 +48,8 @@ double PressOn(const ErrorModel& model, const Geometry& geometry, int leg, int p
   return TotalMass(model.tree) * kGravity.norm() - but_leg - up_foot.dot(load.wrench.head<3>());
 }
 
-/// What presses on a foot and on all that support the robot, mean over the postures in which the
-/// torques say both, N.
+/// Vertical forces of one foot (`own`) and of all supporting feet together (`all`) on the floor, N:
+/// means over the postures in which the torques tell both.
 struct Pressed {
   double own = 0.0, all = 0.0;
   int postures = 0;

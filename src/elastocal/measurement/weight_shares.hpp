@@ -7,10 +7,11 @@
 
 namespace elastocal {
 
-/// Tells the shares of the weight (FootRest::share) of rests. `trials`: by FootRest::trial, the
-/// number of the trial in the recording, or -1 where that does not have it: such a rest stays as it
-/// is. Positions and torques of the recording are taken as they are: shares are told anew once
-/// mistakes are undone, and sensors that contradict statics hidden.
+/// Sets the share of the weight (FootRest::share) of each of `rests`. `trials` maps FootRest::trial
+/// to the trial's index in the recording; -1, or an index beyond the end: the recording does not
+/// have it, and the rest stays as it is. Positions and torques of the recording are used as they
+/// are. Call this again after mistakes in the recording are undone or torque sensors that
+/// contradict statics are removed.
 void ShareWeights(const RobotTree& tree, const std::vector<Marker>& markers,
                   const Recording& recording, const std::vector<int>& trials,
                   std::vector<FootRest>& rests);

@@ -52,7 +52,7 @@ bool PlaceLegs(const StandingRobot& robot, const Stretch& stretch,
   return true;
 }
 
-/// Share of a displacement of the root link that the centre of mass follows, ahead and sideways.
+/// Share of a displacement of the root link that the centre of mass follows, along x and along y.
 Eigen::Vector2d FollowingShare(const StandingRobot& robot, const Stretch& stretch) {
   constexpr double kStep = 1e-3;
   const auto com = [&](const Eigen::Vector2d& move) -> Eigen::Vector2d {

@@ -12,12 +12,12 @@ namespace elastocal {
 /// A stretch of motion at a constant rate, from rest to rest, before it is balanced.
 struct Stretch {
   double rate_hz = 100.0;
-  /// samples x coordinates. Balancing finds the joints of the legs in `standing` and of `led`; the
-  /// values given for them only say which way they bend.
+  /// samples x coordinates. Balancing computes the joints of the legs in `standing` and of `led`;
+  /// the values given here for them only say which way the legs bend.
   Eigen::MatrixXd q;
-  std::vector<int> standing;  ///< feet that stand still on the floor, indices of soles
-  int led = -1;               ///< a foot in the air with a given way in the world; -1: none
-  std::vector<Transform> T_world_led;  ///< poses of the sole of `led`, by sample; empty without
+  std::vector<int> standing;           ///< feet that stand still on the floor, indices of soles
+  int led = -1;                        ///< foot that moves along given poses in the air; -1: none
+  std::vector<Transform> T_world_led;  ///< poses of the sole of `led`, by sample; empty: no `led`
   Eigen::MatrixX2d zmp;                ///< where the zero-moment point should be, m
   PlacedPosture begin, end;            ///< balanced at rest, see BalanceAtRest
 
@@ -35,7 +35,7 @@ struct BalanceOptions {
 struct BalancedStretch {
   bool in_reach = false;  ///< whether all feet could be placed; nothing else is valid otherwise
   Eigen::MatrixXd q;      ///< samples x coordinates
-  std::vector<Transform> T_world_root;  ///< by sample
+  std::vector<Transform> T_world_root;  ///< one for each sample
   Eigen::MatrixX2d zmp;                 ///< of the balanced motion, m
 };
 
@@ -46,11 +46,12 @@ struct BalancedStretch {
 /// the unknown, instead of 6 or 12 joints. Height and attitude of the root link pass smoothly from
 /// those of `begin` to those of `end`.
 ///
-/// Eq. 13 is solved for all samples together, because accelerations tie them. The zero-moment point
-/// answers to a small displacement d(t) of the root like a cart on a table, s (d - h/g d''), where
-/// h is the height of the centre of mass and s the share of the displacement that it follows. Each
-/// pass is therefore a linear least-squares problem with a band matrix, and its result is smooth
-/// and anticipates what will come. The first and last three samples are at rest.
+/// Eq. 13 is solved for all samples together, because accelerations couple them. A small
+/// displacement d(t) of the root moves the zero-moment point as in the model of a cart on a table,
+/// by s (d - h/g d''), where h is the height of the centre of mass and s the share of the
+/// displacement that the centre of mass follows. Each pass is therefore a linear least-squares
+/// problem with a band matrix. Its result is smooth and begins to move before it has to. The first
+/// and last three samples are at rest.
 ///
 /// Limits are not checked here; see motion_check.hpp.
 BalancedStretch Balance(const StandingRobot& robot, const Stretch& stretch,

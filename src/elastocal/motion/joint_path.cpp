@@ -67,7 +67,7 @@ class WayAround {
 
   /// Pushes the way away from what is too near, and keeps the best one.
   void Bend(int iterations, JointPath& path) const {
-    constexpr double kFirstStep = 0.15;  // of the way point that moves most, rad
+    constexpr double kFirstStep = 0.15;  // first step: largest change of a coordinate, rad
     constexpr double kShrink = 0.96;
     Eigen::MatrixXd control = path.control;
     double length = kFirstStep;
@@ -166,8 +166,8 @@ FreeSpace PosturesBetween(const StandingRobot& robot, const Clearances& clearanc
   return space;
 }
 
-/// Leads a way that is not free along a detour, if that keeps parts further from each other. The
-/// detour is one of the coordinates that differ at the ends.
+/// Puts a way that is not free on a detour, if that keeps parts further from each other. Only
+/// coordinates that differ at the ends take part in the detour.
 void GoByDetour(const StandingRobot& robot, const Clearances& clearances,
                 const std::vector<int>& moving, const JointPathOptions& options,
                 double least_at_ends, JointPath& path) {

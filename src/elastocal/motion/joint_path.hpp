@@ -25,14 +25,17 @@ struct JointPath {
   double clearance = 0.0;  ///< least distance between parts on the way, m; infinite without parts
 };
 
-/// Plans a way by quintic B-splines whose way points are optimised (section 3.6). The least
-/// integral of squared velocity gives the way points in closed form. Where parts come nearer to
-/// each other than the clearance, way points of `moving` coordinates are pushed along the gradient
-/// of the squared lack of distance, in the metric of velocity, so that ways stay smooth. They stay
-/// inside the joints' ranges, and the convex hull of the control points keeps the whole way there.
-/// All other coordinates follow the straight way. Where that leaves parts too near, the way points
-/// are put on a detour (ConnectByTrees) of those `moving` coordinates that differ at the ends, and
-/// pushed again; it takes `duration_s` for each side. Clearance is checked between the knots too.
+/// Plans a way by quintic B-splines whose way points are optimised (section 3.6):
+/// 1. The way points with the least integral of squared velocity follow in closed form.
+/// 2. If parts come nearer to each other than the clearance, way points of `moving` coordinates are
+///    pushed along the gradient of the squared lack of distance, in the metric of velocity, so that
+///    the way stays smooth. They stay inside the joints' ranges, and so does the whole way, because
+///    it lies in the convex hull of the control points. All other coordinates follow the straight
+///    way.
+/// 3. If parts are still too near, the way points are put on a detour (ConnectByTrees) of those
+///    `moving` coordinates that differ at the ends, and pushed again. A detour takes `duration_s`
+///    for each of its sides.
+/// Clearance is checked between the knots too.
 ///
 /// A way that is not free is not an error: JointPath::clearance says how near parts come.
 /// `clearances` gives the distances to keep, which may include more than the robot's own parts; it

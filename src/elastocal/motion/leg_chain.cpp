@@ -15,13 +15,14 @@ namespace elastocal {
 
 namespace {
 
-/// The step that does what is wanted: of several the shortest, of none the one that comes nearest.
+/// The shortest step of the joints that gives the wanted motion, or comes nearest to it.
 Eigen::VectorXd LeastStep(const Eigen::MatrixXd& screws, const Eigen::VectorXd& wanted) {
   if (screws.cols() == screws.rows()) return screws.partialPivLu().solve(wanted);
   return ShortestSolution(screws, wanted);
 }
 
-/// How a point moves, 3 x coordinates, where its body moves by screws about the root's origin.
+/// Derivatives of a point by the coordinates, 3 x coordinates, from the screws of its body about
+/// the root's origin.
 Eigen::MatrixXd PointMoves(const Eigen::MatrixXd& screws, const Eigen::Vector3d& point) {
   return screws.bottomRows(3) - Skew(point) * screws.topRows(3);
 }

@@ -10,28 +10,28 @@
 
 namespace elastocal {
 
-/// How many entries of q of its own a leg has at least whose foot can be placed.
+/// Least number of entries of q of its own that a leg needs for its foot to be placed.
 constexpr std::size_t LeastLegJoints(bool on_ball) { return on_ball ? 3 : 5; }
 
-/// A leg: the joints from the root link to a sole. It has five or more entries of q of its own, or
-/// three or more if its sole is a ball, of which only the place counts; joints within it may be
-/// coupled. A joint that moves another leg too (a waist above the legs, hips that share a motor)
-/// stays where it is when the leg is placed. With more than six (three) entries of its own, the leg
-/// stays near the posture from which it is placed, or goes by the one that is preferred; with five,
-/// only some poses of the sole are in reach (those parallel to the root link, where what is missing
-/// is the joint about the vertical).
+/// A leg: the joints from the root link to a sole. It has at least five entries of q of its own, or
+/// three if its sole is a ball, of which only the place counts. Joints within the leg may be
+/// coupled. A joint that also moves another leg (a waist above the legs, hips that share a motor)
+/// stays where it is when the leg is placed. A leg with more than six (three) entries of its own
+/// stays near the posture from which it is placed, or follows the preferred posture (Prefer). A leg
+/// with five can reach only some poses of the sole; if the joint about the vertical is missing,
+/// these are the poses with the heading of the root link.
 class LegChain {
  public:
-  /// Keeps a reference. `soles`: all of the robot, this one among them or not. Throws InputError
-  /// for fewer joints of its own.
+  /// Keeps a reference to the tree. `soles` are those of the whole robot, with or without this one.
+  /// Throws InputError if the leg has too few entries of q of its own (LeastLegJoints).
   LegChain(const RobotTree& tree, const Sole& sole, const std::vector<Sole>& soles = {});
 
   int sole_link() const { return sole_link_; }
   bool on_ball() const { return on_ball_; }
-  /// Its own entries of q, from the root on.
+  /// Entries of q that move only this leg, from the root outwards.
   const std::vector<int>& coordinates() const { return coordinates_; }
-  /// Whether the root link has to turn about the vertical for the foot to keep its pose, because
-  /// too few joints are its own and others are shared with other legs.
+  /// Whether the root link must turn about the vertical for the foot to keep its pose, because the
+  /// leg has too few joints of its own and shares others with other legs.
   bool turns_root() const { return turns_root_; }
   /// The entries of q that it shares with other legs, from the root on.
   const std::vector<int>& shared_coordinates() const { return shared_; }
@@ -42,10 +42,10 @@ class LegChain {
   /// Pose of the sole in the root link's frame.
   Transform SolePose(const Eigen::VectorXd& q) const;
 
-  /// A leg with spare joints has many postures with the same pose of the sole. `Place` takes from
-  /// now on the one that differs from `q` only by what moves the sole (as seen at `q`). It then
-  /// depends on the pose alone, not on the way to it. Legs without spare joints are left as they
-  /// are.
+  /// Sets the preferred posture of a leg with spare joints, for which many postures give the same
+  /// pose of the sole. From now on, `Place` returns the posture that differs from `q` only in
+  /// directions that move the sole (at `q`). The posture then depends on the pose alone, and not on
+  /// the posture from which the leg is placed. Has no effect on legs without spare joints.
   void Prefer(const Eigen::VectorXd& q);
 
   /// Moves the leg's joints in `q` by Newton's method until the sole has the given pose in the root
@@ -54,8 +54,8 @@ class LegChain {
   /// straight.
   bool Place(const Transform& T_root_sole, Eigen::VectorXd& q) const;
 
-  /// The same, but the sole of a leg of five joints, which cannot have every pose, may turn about
-  /// its normal.
+  /// Like `Place`, but the sole may turn about its normal, because a leg of five joints cannot
+  /// reach every pose.
   bool PlaceFlat(const Transform& T_root_sole, Eigen::VectorXd& q) const;
 
   /// The same as `Place` for a pose of the sole in the world. A root link that has to turn (see
@@ -64,7 +64,7 @@ class LegChain {
                       Eigen::VectorXd& q) const;
 
  private:
-  /// What else may turn, beside the leg's joints, while the sole is placed.
+  /// What may turn, besides the leg's joints, while the sole is placed.
   enum class Turns { kNothing, kSole, kRoot };
   /// `up`: the axis of a root link that turns, in its frame. Returns nothing if the sole is out of
   /// reach, and otherwise the angle by which the root link turns, rad.
@@ -73,7 +73,7 @@ class LegChain {
   /// Pose of the sole; sets `screws` to its derivatives, 6 x coordinates: a rotation and the
   /// velocity of the point at the root's origin.
   Transform Evaluate(const Eigen::VectorXd& q, Eigen::MatrixXd& screws) const;
-  /// How many numbers `Place` sets: those of the sole's pose, or of a ball's place.
+  /// Number of coordinates that `Place` sets: six of a pose, or three of a ball's place.
   int placed() const { return on_ball_ ? 3 : 6; }
 
   const RobotTree& tree_;
@@ -82,7 +82,7 @@ class LegChain {
   double length_ = 0.0;
   std::vector<int> joints_, coordinates_, shared_;
   Eigen::VectorXd preferred_;  ///< by the leg's coordinates; empty: none
-  Eigen::MatrixXd still_;      ///< rows: directions of the joints in which the sole stays, there
+  Eigen::MatrixXd still_;  ///< rows: directions of joints that do not move the sole at `preferred_`
 };
 
 }  // namespace elastocal

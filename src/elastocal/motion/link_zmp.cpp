@@ -56,7 +56,7 @@ Worst LeastAverageZmp(const StandingRobot& robot, const std::vector<std::vector<
                       const Eigen::MatrixX2d& zmp, double step) {
   const auto each_side = std::lround(0.5 * std::sqrt(robot.leg_length / kGravity.norm()) / step);
   Worst least;
-  Eigen::Index end = 0;  // of the samples with one support
+  Eigen::Index end = 0;  // end of the samples on the same feet
   for (Eigen::Index begin = 0; begin < zmp.rows(); begin = end) {
     const std::vector<int>& feet = standing[Size(begin)];
     while (end < zmp.rows() && standing[Size(end)] == feet) ++end;

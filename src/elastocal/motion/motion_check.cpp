@@ -24,7 +24,8 @@ void Largest(Worst& worst, double value, Eigen::Index sample, int index) {
   worst = {value, static_cast<int>(sample), index};
 }
 
-/// By how much the margin of a joint with a small range (a finger) is less than that of others.
+/// By how much the margin of a joint with a small range (a finger) is smaller than that of others,
+/// rad or m.
 double LessMargin(const JointLimits& limits, double margin) {
   constexpr double kShare = 0.02;
   return std::max(0.0, margin - kShare * (limits.upper - limits.lower));
@@ -180,7 +181,7 @@ MotionMargins CheckMotion(const StandingRobot& robot, const SampledMotion& motio
 
 std::vector<Constraint> BrokenConstraints(const MotionMargins& margins,
                                           const MotionLimits& limits) {
-  // Written so that NaN breaks them.
+  // The comparisons are written so that NaN breaks a limit.
   const auto below = [](const Worst& worst, double limit) { return !(worst.value >= limit); };
   const auto above = [](const Worst& worst, double limit) { return !(worst.value <= limit); };
   // Postures that are designed at the margin come from files with twelve digits.

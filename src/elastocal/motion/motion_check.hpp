@@ -15,13 +15,14 @@ namespace elastocal {
 struct Worst {
   double value = 0.0;
   int sample = -1;
-  int index = -1;  ///< of a joint, foot or pair of parts; -1 without
+  int index = -1;  ///< index of the joint, foot or pair of parts; -1: none
 };
 
 /// Worst values of a motion over all samples.
 struct MotionMargins {
-  /// Least distance of a joint to the end of its range, rad or m. To that of a joint whose range is
-  /// less than 50 margins, what 2 % of the range are less than the margin is added.
+  /// Least distance of a joint to the end of its range, rad or m. A joint with a small range (a
+  /// finger) needs a margin of only 2 % of its range if that is less than
+  /// MotionLimits::position_margin; the difference is added to its distance.
   Worst position;
   Worst velocity;      ///< largest share of a joint's velocity limit
   Worst torque;        ///< largest share of a joint's effort limit, see CheckMotion
@@ -76,8 +77,8 @@ struct MotionForces {
 MotionMargins CheckMotion(const StandingRobot& robot, const SampledMotion& motion,
                           MotionForces* forces = nullptr);
 
-/// A standing foot may move by this, m or rad, and a corner of a swinging foot may be as far below
-/// the floor, m: rounding.
+/// Tolerance for rounding: a standing foot may move by this, m or rad, and a swinging foot may be
+/// so far below the floor, m.
 inline constexpr double kFootTolerance = 1e-6;
 
 /// All constraints that the margins break, in the order of Constraint.

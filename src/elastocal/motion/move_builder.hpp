@@ -28,8 +28,9 @@ class MoveBuilder {
   MoveBuilder(const StandingRobot& robot, const PlanOptions& options)
       : robot_(robot), options_(options) {}
 
-  /// Where the zero-moment point is when the other foot than `onto` leaves the floor, m: of one
-  /// foot, on the side of the other; of several, in the middle.
+  /// Zero-moment point, m, at which the foot that is not in `onto` leaves the floor. If `onto` is
+  /// one foot, the point is displaced from its middle towards the other foot; if there are several,
+  /// it is in their middle.
   Eigen::Vector2d HandOver(const std::vector<int>& onto) const;
 
   /// The posture, balanced at rest on the feet. The joints of standing legs are solved for,
@@ -40,8 +41,9 @@ class MoveBuilder {
   std::optional<PlacedPosture> AtRest(const Eigen::VectorXd& q, const std::vector<int>& standing,
                                       const PlacedPosture& near, Refusal& why) const;
 
-  /// The posture as it is, legs too: the feet say where the root link is (RootOverFeet), and the
-  /// centre of mass where the zero-moment point is. All feet are put exactly where they stand.
+  /// The posture as it is given, including the legs. The feet give the pose of the root link
+  /// (RootOverFeet), and the centre of mass the zero-moment point. All feet are then put exactly
+  /// where they stand.
   std::optional<PlacedPosture> AsGiven(const Eigen::VectorXd& q, const std::vector<int>& standing,
                                        Refusal& why) const;
 
@@ -76,8 +78,8 @@ class MoveBuilder {
   Eigen::Index SamplesOf(double seconds) const;
 
  private:
-  /// Samples of the zero-moment point that lead from where it is at rest in one posture to the
-  /// other.
+  /// Samples of the zero-moment point that lead from its place at rest in one posture to that in
+  /// the other.
   Eigen::MatrixX2d ZmpWay(const PlacedPosture& from, const PlacedPosture& to,
                           const std::vector<int>& standing, Eigen::Index samples) const;
   std::optional<Eigen::MatrixXd> BalanceAndCheck(const Stretch& stretch, Refusal& why) const;

@@ -81,8 +81,8 @@ class TourPlanner {
     rows_.Add(here_.q.transpose().replicate(samples, 1), set_.standing);
   }
 
-  /// Shifts the weight and lifts the foot on which the set does not stand, the waist upright or,
-  /// where the hips do not bend so far, leaning. Does nothing if the set stands on all feet.
+  /// Shifts the weight and lifts the foot on which the set does not stand. The waist is upright, or
+  /// leans if the hips do not bend so far. Does nothing if the set stands on all feet.
   bool StepOntoFeet(Refusal& why) {
     if (!LiftsAFoot()) return true;
     bool joint_at_end = false;
@@ -98,8 +98,9 @@ class TourPlanner {
     return false;
   }
 
-  /// `why`: with the foot flat. `tilted`: with the foot tilted so that no joint is at its end,
-  /// where something else is wrong then; otherwise `why`.
+  /// Shifts the weight with a leaning waist and lifts the foot. If this fails, `why` is the reason
+  /// with a flat foot. `tilted` is the reason with a tilted foot, if the flat foot fails at the end
+  /// of a joint's range and the tilted one for another reason; otherwise it is equal to `why`.
   bool StepLeaning(double lean, Refusal& why, Refusal& tilted) {
     PlacedPosture over = here_;
     over.T_world_root.linear() = RotX(lean).linear() * over.T_world_root.linear();
@@ -112,7 +113,8 @@ class TourPlanner {
     tilted = why;
     if (!shifted) return false;
     shifted_ = *shifted;
-    // Flat or, where the ankle does not bend so far, with the toes, the heel or a side down.
+    // The foot is flat or, if the ankle does not bend so far, has the toes, the heel or a side
+    // down.
     constexpr std::array<double, 8> kTilts = {0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.45, -0.45};
     if (LiftFoot(over, Eigen::Vector2d::Zero(), why)) return true;
     tilted = why;
@@ -129,8 +131,8 @@ class TourPlanner {
     return false;
   }
 
-  /// Lifts the foot on which the set does not stand, the weight being over the others. `tilt`: a
-  /// rotation vector about the x and y axes of the sole, rad.
+  /// Lifts the foot on which the set does not stand, while the weight is over the others. `tilt` is
+  /// a rotation vector about the x and y axes of the sole, rad.
   bool LiftFoot(const PlacedPosture& over, const Eigen::Vector2d& tilt, Refusal& why) {
     const int swings = SwingingFoot();
     const Transform T_world_lifted = Eigen::Translation3d(0.0, 0.0, options_.lift_m) *
@@ -203,7 +205,7 @@ class TourPlanner {
     return true;
   }
 
-  /// Holds the posture, in which the robot has arrived, and takes it down as visited.
+  /// Holds the posture in which the robot has arrived, and records it as visited.
   void Rest(int posture) {
     const int ends = static_cast<int>(build_.SamplesOf(0.5));
     result_.visits.push_back({posture, rows_.count - ends, 0});

@@ -23,12 +23,12 @@ struct PostureTour {
       false;  ///< visited in the given order, each time from the posture of rest (repeatability)
   /// Coordinates that oscillate one after the other while all else is at rest (section 6.1.4).
   std::vector<int> sines = {};
-  /// The postures are held as they are, legs too: the first foot that stands says where the root
-  /// link is.
+  /// Whether the postures are held as they are given, including the legs. The first foot that
+  /// stands then gives the pose of the root link.
   bool legs_given = false;
-  /// Empty, or by posture: the only way to it, samples x coordinates at the rate of the options,
-  /// during which the root link stays where it is in the posture. The robot goes it forth and back.
-  /// A posture with an empty way is left out.
+  /// For each posture, the only way to it, samples x coordinates at the rate of the options. The
+  /// robot goes this way forth and back, while the root link stays where it is in the posture. A
+  /// posture with an empty way is left out. No entries: ways are planned.
   std::vector<Eigen::MatrixXd> approaches = {};
 };
 
@@ -59,22 +59,22 @@ struct PlanOptions {
   /// Height to which a foot is lifted before its leg moves freely, m. A tenth of it is lifted
   /// before the rest of the weight is shifted. 0: 0.123 of the leg's length.
   double lift_m = 0.0;
-  int slower = 2;  ///< how often a move is tried again, 1.5 times as slow, before it is given up
+  int slower = 2;  ///< how often a move is tried again, 1.5 times slower, before it is given up
 };
 
 /// A posture at rest in a planned motion.
 struct Visit {
-  int posture = 0;         ///< of the set
+  int posture = 0;         ///< index of the posture in the set
   int begin = 0, end = 0;  ///< samples of the hold, without `end`
 };
 
 /// A posture (or sinusoidal motion) that is not part of the motion, and why.
 struct LeftOut {
-  int posture = 0;  ///< of the set; -1: a sine
+  int posture = 0;  ///< index of the posture in the set; -1: a sine
   int sine = -1;    ///< coordinate of the sine
   Constraint constraint = Constraint::kReach;
   double value = 0.0;   ///< value that breaks the constraint, see MotionMargins; NaN: out of reach
-  int index = -1;       ///< of the joint, foot or pair of parts
+  int index = -1;       ///< index of the joint, foot or pair of parts
   bool at_rest = true;  ///< whether the posture itself breaks it; otherwise every way there does
 };
 

@@ -17,7 +17,7 @@ struct Refusal {
 /// The constraint that the margins break, if any, with its value.
 std::optional<Refusal> Refuse(const MotionMargins& margins, const MotionLimits& limits);
 
-/// The refusal because a foot is out of reach.
+/// The refusal for a foot that is out of reach.
 Refusal OutOfReach();
 
 }  // namespace elastocal

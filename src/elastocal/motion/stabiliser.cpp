@@ -101,8 +101,8 @@ void Stabiliser::StandOn(int reference) {
   reference_ = reference;
 }
 
-/// The share of the weight that the plan puts on each sole: of two by the lever rule, of more
-/// alike.
+/// Sets the share of the weight that the plan puts on each sole: by the lever rule for two, equal
+/// shares for more.
 void Stabiliser::ShareWeight(const Eigen::VectorXd& planned, const std::vector<int>& support) {
   share_.resize(static_cast<Eigen::Index>(legs_.size()));
   for (std::size_t i = 0; i < legs_.size(); ++i) {
@@ -220,7 +220,7 @@ Eigen::VectorXd Stabiliser::Corrected(const Eigen::VectorXd& planned) const {
   Eigen::VectorXd corrected = planned;
   struct Moved {
     std::size_t leg;
-    double share, largest;  // rad
+    double share, largest;  // largest: rad
   };
   std::vector<Moved> standing, lifted;
   for (std::size_t i = 0; i < legs_.size(); ++i) {
@@ -245,7 +245,7 @@ Eigen::VectorXd Stabiliser::Corrected(const Eigen::VectorXd& planned) const {
     (share_[static_cast<Eigen::Index>(i)] > 0.0 ? standing : lifted)
         .push_back({i, share, moved.cwiseAbs().maxCoeff()});
   }
-  // Near its full length a lifted leg would have to move by much for little.
+  // Near its full length, a small displacement of the sole needs large motions of the joints.
   constexpr double kMoreThanStanding = 2.0, kUsual = 0.1;  // rad
   double most = kUsual;
   for (const Moved& leg : standing) most = std::max(most, kMoreThanStanding * leg.largest);

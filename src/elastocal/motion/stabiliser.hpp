@@ -49,13 +49,15 @@ struct StabiliserOptions {
 ///   centres of pressure at like points (a foot on its edge lets the robot rock, and its centre of
 ///   pressure no longer tells where the weight is),
 /// - shifts the root link until the zero-moment point is where the planned centre of mass is.
-/// With more than two feet it only does the last, with the feet, and balls cannot be turned.
-/// Turn and shift are learned for each foot by its planned share of the weight, because every leg
-/// has errors of its own: what it learned on a foot is used again when the weight comes back.
-/// It knows the robot by its description, without errors and elasticity, and takes planned
-/// positions for those of a robot at rest. Whoever knows the robot better tells it the rest
-/// (TakeRest), or it moves a root link that is right until described masses are over the feet. The
-/// paper's robot has its own stabiliser, for which section 3.6 plans.
+/// Feet are turned only if there are two of them and they are not balls; the root link is turned
+/// and shifted in any case.
+/// Turn and shift are learned for each foot in proportion to its planned share of the weight,
+/// because every leg has errors of its own. What was learned on a foot is used again when the
+/// weight comes back to it. The stabiliser knows the robot by its description, without errors and
+/// elasticity, and treats planned positions as those of a robot at rest. A caller whose robot is
+/// known to stand as planned calls TakeRest; otherwise errors of the described masses make the
+/// stabiliser move a root link that is right. The paper's robot has its own stabiliser, for which
+/// section 3.6 plans.
 class Stabiliser {
  public:
   /// Keeps a reference to the tree. Throws InputError if a sole is not at the end of a leg
@@ -69,9 +71,10 @@ class Stabiliser {
   Eigen::VectorXd Correct(const Eigen::VectorXd& planned, const std::vector<int>& support,
                           const StandingSense& sense, double interval_s);
 
-  /// For a robot that is known to stand as planned: where its zero-moment point is then off the
-  /// planned centre of mass, at rest, is taken for an error of the described masses that moves with
-  /// the root link, and is no reason to shift.
+  /// Learns the error of the described masses from a robot that is known to stand as planned, at
+  /// rest. The distance of its zero-moment point from the planned centre of mass is from then on
+  /// treated as an error of the centre of mass that moves with the root link, and not as a reason
+  /// to shift.
   void TakeRest(const Eigen::VectorXd& planned, const std::vector<int>& support,
                 const StandingSense& sense);
 
@@ -86,7 +89,8 @@ class Stabiliser {
   StandingSense InSoleAxes(const Eigen::VectorXd& planned, const StandingSense& sense) const;
   void StandOn(int reference);
   void ShareWeight(const Eigen::VectorXd& planned, const std::vector<int>& support);
-  /// What was learned for the soles, by their shares of the weight, in the axes of the reference.
+  /// Mean of what was learned for the soles, weighted by their shares of the weight, in the axes of
+  /// the reference sole.
   Eigen::Vector2d Blend(const std::vector<Eigen::Vector2d>& by_sole) const;
   /// Changes what was learned so that its blend changes by `change`.
   void Learn(const Eigen::Vector2d& change, double largest, std::vector<Eigen::Vector2d>& by_sole);
@@ -94,8 +98,8 @@ class Stabiliser {
   bool BothPressed(const StandingSense& sense) const;
   void LearnFeet(const StandingSense& sense, double interval_s);
   void LearnHeight(const StandingSense& sense, double interval_s);
-  /// Zero-moment point less planned centre of mass, in the axes of the reference; none where the
-  /// feet are hardly pressed.
+  /// Zero-moment point less planned centre of mass, in the axes of the reference sole, m; nothing
+  /// if the feet are hardly pressed.
   std::optional<Eigen::Vector2d> Off(const Eigen::VectorXd& planned,
                                      const StandingSense& sense) const;
   void LearnShift(const Eigen::VectorXd& planned, const StandingSense& sense, double interval_s);
@@ -108,7 +112,7 @@ class Stabiliser {
   std::vector<Eigen::Vector2d> middle_;     ///< of the soles, in their axes, m
   double leg_length_ = 1.0, weight_ = 0.0;  ///< m, N
   double frequency_ = 1.0;                  ///< of the sway, rad/s
-  /// Of the centre of mass from the described one, in the root link's axes, m.
+  /// Displacement of the centre of mass from the described one, in the root link's axes, m.
   Eigen::Vector3d com_off_ = Eigen::Vector3d::Zero();
   std::vector<Transform> T_root_sole_;  ///< as planned
   int reference_ = 0;                   ///< the sole in whose axes turn and shift are expressed
@@ -118,7 +122,7 @@ class Stabiliser {
   Eigen::Vector2d off_ = Eigen::Vector2d::Zero();   ///< filtered error of the zero-moment point, m
   Eigen::Vector2d foot_ = Eigen::Vector2d::Zero();  ///< turn of the first of two soles, rad
   double height_ = 0.0;                             ///< of the first of two soles over the other, m
-  Eigen::VectorXd correction_;                      ///< of the joints
+  Eigen::VectorXd correction_;                      ///< corrections of the joints, rad
 };
 
 }  // namespace elastocal

@@ -17,7 +17,7 @@ Eigen::Vector3d SoleCentre(const Sole& sole, const Transform& T_world_sole) {
   return T_world_sole * Eigen::Vector3d(centre.x(), centre.y(), 0.0);
 }
 
-/// Places a leg; of one with too few joints of its own, the sole may turn about its normal.
+/// Places a leg. If it has too few joints of its own, the sole may turn about its normal.
 bool PlaceLeg(const LegChain& leg, const Transform& T_root_sole, Eigen::VectorXd& q) {
   return leg.turns_root() ? leg.PlaceFlat(T_root_sole, q) : leg.Place(T_root_sole, q);
 }
@@ -47,7 +47,7 @@ bool Bend(const LegChain& leg, const RobotTree& tree, const Transform& T_root_so
   return false;
 }
 
-/// Height of the root link above the floor: of the posture, if its knees are bent, and otherwise
+/// Height of the root link above the floor, m: that of the posture if its knees are bent, otherwise
 /// that of straight legs less the drop.
 double RootHeight(const StandingRobot& robot, const Eigen::VectorXd& posture,
                   const StandOptions& options) {
@@ -98,7 +98,7 @@ void SizeSupport(StandingRobot& robot) {
   if (robot.limits.zmp_margin < 0.0) robot.limits.zmp_margin = kZmpShare * robot.half_support;
 }
 
-/// By how much a sole is turned about the vertical from where it stands, rad.
+/// Angle about the vertical by which a sole is turned from its pose on the floor, rad.
 double HeadingOff(const StandingRobot& robot, int foot, const PlacedPosture& pose) {
   const Eigen::Matrix3d R = pose.T_world_root.linear() *
                             robot.legs[Size(foot)].SolePose(pose.q).linear() *
@@ -106,7 +106,8 @@ double HeadingOff(const StandingRobot& robot, int foot, const PlacedPosture& pos
   return RotationVector(R).z();
 }
 
-/// Where a sole stands on the floor: as it is in the zero posture, a ball as in `posture`.
+/// Pose in which a sole stands on the floor: under the root link as in the zero posture, or for a
+/// ball as in `posture`.
 Transform PlaceOnFloor(const StandingRobot& robot, int foot, const Eigen::VectorXd& posture) {
   constexpr double kUpright = 0.01;
   const Sole& sole = robot.soles[Size(foot)];
@@ -122,10 +123,10 @@ Transform PlaceOnFloor(const StandingRobot& robot, int foot, const Eigen::Vector
   return T_world_sole;
 }
 
-/// Whether the feet of a posture are where they stand, and the others not below the floor.
+/// Whether the standing feet are in their places on the floor, and the others not below it.
 bool FitsTheFloor(const StandingRobot& robot, const std::vector<int>& standing,
                   const Transform& T_world_root, const Eigen::VectorXd& q) {
-  constexpr double kOff = 1e-3;  // m: a foot that stands too is there but for rounding
+  constexpr double kOff = 1e-3;  // m: a standing foot is off its place by less, from rounding
   const std::vector<int> feet = robot.AllFeet();
   return std::all_of(feet.begin(), feet.end(), [&](int foot) {
     const Eigen::Vector3d found = (T_world_root * robot.legs[Size(foot)].SolePose(q)).translation();

@@ -30,8 +30,9 @@ struct MotionLimits {
   double lever_share = 0.1;  ///< least LeverShare of linkages: away from their dead points
 };
 
-/// A robot with its feet on a level floor, z = 0 of the world, or one whose root link is held still
-/// at the world's origin (an arm, or a robot on a stand): it has no soles, and nothing balances.
+/// A robot with its feet on a level floor, z = 0 of the world, or a held robot: its root link is
+/// held still at the world's origin (an arm, or a robot on a stand), it has no soles, and nothing
+/// has to balance.
 struct StandingRobot {
   RobotTree tree;
   std::vector<BodyInertia> inertias;
@@ -43,20 +44,22 @@ struct StandingRobot {
   /// The posture of rest: balanced on all feet.
   Eigen::VectorXd rest;
   Transform T_world_root = Transform::Identity();  ///< in the posture of rest
-  /// Where the soles stand; of a ball, with the attitude that it has in the posture of rest.
+  /// Poses of the soles that stand on the floor; that of a ball has the attitude of the posture of
+  /// rest.
   std::vector<Transform> T_world_sole;
 
   StandingRobot(const StandingRobot&) = delete;  // legs refer to the tree
   StandingRobot(RobotTree robot, std::vector<Sole> feet, const MotionLimits& kept);
 
   bool Held() const { return soles.empty(); }
-  /// Length of a leg from its first joint to the sole along its joints, and the least distance from
-  /// the middle of a support on the fewest feet to its edge (half the width of the narrowest sole
-  /// of a biped), m: lengths of a motion are shares of them. 0 for a held robot.
+  /// `leg_length`: length of a leg from its first joint to the sole along its joints, m.
+  /// `half_support`: least distance from the middle of the support to its edge, over all supports
+  /// on the fewest feet, m (half the width of the narrowest sole of a biped). Lengths of a motion
+  /// are shares of these two. Both are 0 for a held robot.
   double leg_length = 0.0, half_support = 0.0;
 
   std::vector<int> AllFeet() const;
-  /// The fewest feet on which it stands while `swings` is in the air: the others.
+  /// All feet except `swings`, which is in the air.
   std::vector<int> AllFeetBut(int swings) const;
 };
 
@@ -92,8 +95,10 @@ struct PlacedPosture {
 Transform RootOverFeet(const StandingRobot& robot, const std::vector<int>& feet,
                        const Eigen::VectorXd& q);
 
-/// The same where the robot stands on all feet or on the fewest: those that stand are where they
-/// are on the floor, and no foot is below it. A held robot is where it is held.
+/// Pose of the root link in the world in a posture on all feet or on all but one: the first pose
+/// for which the standing feet are where they stand (1 mm) and no foot is below the floor. If there
+/// is none, the last foot is taken for the one in the air. For a held robot, the pose in which it
+/// is held.
 Transform RootOnFloor(const StandingRobot& robot, const Eigen::VectorXd& q);
 
 /// Starting from `pose`, moves the root link horizontally until the centre of mass is over `com`,
@@ -108,8 +113,8 @@ bool BalanceAtRest(const StandingRobot& robot, const std::vector<int>& feet,
 /// false, with the pose changed, if a foot is out of reach.
 bool PlaceFeet(const StandingRobot& robot, const std::vector<int>& feet, PlacedPosture& pose);
 
-/// Places one leg so that its sole has the given pose in the world; of a leg with too few joints of
-/// its own, the sole may turn about its normal.
+/// Places one leg so that its sole has the given pose in the world. If the leg has too few joints
+/// of its own, the sole may turn about its normal.
 bool PlaceSole(const StandingRobot& robot, int foot, const Transform& T_world_sole,
                PlacedPosture& pose);
 

@@ -19,7 +19,7 @@ enum class ValidationKind {
 struct ValidationOptions {
   int random_postures = 20;
   int repetitions = 5;
-  int tries = 2000;  ///< draws for a posture before the set gets fewer
+  int tries = 2000;  ///< most draws for one posture; if all fail, the set gets fewer postures
 };
 
 /// One set for each chain. Random postures are drawn uniformly within the limits of `setup`, with

@@ -144,8 +144,8 @@ class IpoptProgram : public Ipopt::TNLP {
  private:
   static Eigen::Map<Eigen::VectorXd> Map(Number* values, Index size) { return {values, size}; }
 
-  /// Ipopt swallows exceptions. Those of the programme, interruptions among them, are kept and end
-  /// it.
+  /// Runs `work` and keeps an exception of the programme (or an interruption), which then ends the
+  /// solve: Ipopt itself swallows exceptions.
   template <typename Work>
   bool Guarded(const Work& work) {
     if (failure_) return false;
@@ -183,7 +183,8 @@ class IpoptProgram : public Ipopt::TNLP {
     return slope;
   }
 
-  /// From the last iterate to this one, both with the multipliers of this one.
+  /// Updates the Hessian by the step from the last iterate to this one. Both gradients use the
+  /// multipliers of this one.
   void LearnCurvature(double objective_factor, const Eigen::VectorXd& x,
                       const Eigen::VectorXd& multipliers) {
     Slopes now{x, program_.Gradient(), program_.Jacobian()};

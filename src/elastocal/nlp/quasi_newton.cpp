@@ -4,7 +4,7 @@
 namespace elastocal {
 
 void QuasiNewtonHessian::Update(const Eigen::VectorXd& step, const Eigen::VectorXd& change) {
-  constexpr double kLeastCurvature = 0.2;  // of what is expected
+  constexpr double kLeastCurvature = 0.2;  // share of the expected curvature (Powell's damping)
   const double length = step.squaredNorm();
   if (!(length > 0.0)) return;
   if (!scaled_ && step.dot(change) > 0.0) {

@@ -10,7 +10,7 @@ namespace elastocal {
 namespace {
 
 constexpr int kMostActiveSets = 20;
-constexpr double kSlightGradient = 1e-9;  // no reason to leave a bound
+constexpr double kSlightGradient = 1e-9;  // a gradient below this leaves an entry at its bound
 
 Eigen::VectorXi NotHeld(const std::vector<char>& held) {
   Eigen::VectorXi free(static_cast<Eigen::Index>(std::count(held.begin(), held.end(), 0)));
@@ -33,9 +33,9 @@ Eigen::VectorXd StepBeside(const std::vector<char>& held, const Eigen::MatrixXd&
   return step;
 }
 
-/// From any entries held, the cost falls with each change of them (active set of Lawson and Hanson
-/// 1974, chapter 23): towards the best step as far as the first bound, which is then held; at the
-/// best step, the entry is let go that leads furthest down.
+/// Active-set method of Lawson and Hanson (1974, chapter 23) from any set of held entries. It goes
+/// towards the best step as far as the first bound, which is then held; at the best step, it lets
+/// go the entry whose release lowers the cost most steeply. The cost falls with each change.
 Eigen::VectorXd DescendToBoundedStep(std::vector<char> held, const Eigen::MatrixXd& information,
                                      const Eigen::VectorXd& gradient, const Eigen::VectorXd& x,
                                      const std::vector<int>& nonnegative) {
@@ -77,7 +77,7 @@ Eigen::VectorXd BoundedStep(const Eigen::MatrixXd& information, const Eigen::Vec
   std::vector<char> held(static_cast<std::size_t>(x.size()), 0);
   for (int i : nonnegative) held[i] = x[i] <= 0.0 && gradient[i] >= 0.0;
   Eigen::VectorXd step;
-  // Many entries are held or let go at once, which mostly ends soon, and may go round in circles.
+  // First many entries are held or let go at once. This mostly ends soon, but may run in circles.
   bool changed = true;
   for (int round = 0; round < kMostActiveSets && changed; ++round) {
     changed = false;

@@ -12,12 +12,12 @@
 namespace elastocal {
 namespace {
 
-constexpr double kFirstDamping = 1e-4;  // of the diagonal, after the first step that failed
-constexpr double kLeastDamping = 1e-9;  // below: none
-constexpr double kMostDamping = 1e12;   // no step lowers the cost
+constexpr double kFirstDamping = 1e-4;  // share of the diagonal, after the first failed step
+constexpr double kLeastDamping = 1e-9;  // smaller values count as no damping
+constexpr double kMostDamping = 1e12;   // beyond this, no step lowers the cost
 constexpr double kFasterDamping = 10.0;
-constexpr double kPoorGain = 0.25;  // of the expected decrease: the step is too long
-constexpr double kMostLoss = 1.0;   // of the same; beyond, no parabola is trusted
+constexpr double kPoorGain = 0.25;  // share of the expected decrease: the step is too long
+constexpr double kMostLoss = 1.0;   // share of it; after a larger rise no parabola is trusted
 
 void End(Termination termination, const char* message, LeastSquaresResult& result) {
   result.termination = termination;
@@ -31,10 +31,11 @@ Eigen::VectorXd DampedStep(const NormalEquations& equations, double damping,
   return BoundedStep(information, equations.gradient(), x(equations.unknowns()), nonnegative);
 }
 
-/// A step from `x`, and the cost where it leads; `problem` is evaluated there. Where the cost falls
-/// by much less than expected, the curvature along the step is not that of the linearised problem
-/// (it may be twice that, and full steps then jump to and fro across the minimum): the step then
-/// ends at the minimum of the parabola through what is known along it, if the cost is lower there.
+/// Takes a step from `x`, evaluates `problem` there, and returns the new point with its `cost`. If
+/// the cost falls by much less than expected, the curvature along the step is not that of the
+/// linearised problem (it may be twice that, and full steps then jump to and fro across the
+/// minimum). The step then ends at the minimum of the parabola through the known costs and slope,
+/// if the cost is lower there.
 Eigen::VectorXd TakeStep(LeastSquaresProblem& problem, const Eigen::VectorXd& x, double cost_before,
                          const Eigen::VectorXd& step, double slope, double expected, double& cost) {
   const Eigen::VectorXd full = x + step;

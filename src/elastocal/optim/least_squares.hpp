@@ -22,8 +22,8 @@ class LeastSquaresProblem {
 
   struct ResidualBlock {
     int size = 0;
-    std::vector<int> parameter_blocks;  ///< that it depends on, each once
-    /// Whether it takes part in the minimum; one that does not is only evaluated.
+    std::vector<int> parameter_blocks;  ///< blocks of x that it depends on, each once
+    /// Whether it is part of the sum that is minimised. A block that is not is only evaluated.
     bool active = true;
   };
 
@@ -47,7 +47,7 @@ class LeastSquaresProblem {
 
 struct LeastSquaresOptions {
   int max_iterations = 100;
-  /// Ends when a step is expected to lower the cost relatively by less than this.
+  /// The solver ends when a step is expected to lower the cost by less than this share of it.
   double function_tolerance = 1e-13;
 };
 
@@ -60,7 +60,7 @@ struct LeastSquaresResult {
 };
 
 /// Levenberg-Marquardt from `x0`: Gauss-Newton steps, each the minimum of the linearised problem
-/// under the bounds (BoundedStep), damped only where one does not lower the cost. On one thread:
+/// under the bounds (BoundedStep), damped only if a step does not lower the cost. On one thread:
 /// same input, same bits out.
 LeastSquaresResult Solve(LeastSquaresProblem& problem, const Eigen::VectorXd& x0,
                          const LeastSquaresOptions& options = {});

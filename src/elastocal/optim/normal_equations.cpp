@@ -13,11 +13,12 @@ namespace {
 /// Keeps a nuisance that nothing determines from being divided by zero; information of the others
 /// is of the order of one or more.
 constexpr double kRidge = 1e-12;
-constexpr Eigen::Index kBatchRows = 384;  // of nuisance, eliminated in one product
-constexpr double kLeastLeft = 1e-6;       // of an added unknown, beside the others
+constexpr Eigen::Index kBatchRows = 384;  // rows of nuisance that are eliminated in one product
+constexpr double kLeastLeft = 1e-6;       // least share of an added unknown beside the others
 
-/// For each group of blocks with some in a cluster: what `product` gives of these, a vector of the
-/// group's nuisance, summed, with the cluster of the last of them.
+/// For each group with blocks in a cluster, calls `use` with the group, the cluster of the last
+/// such block, and the sum of `product` (a vector of the size of the group's nuisance) over these
+/// blocks.
 template <typename Groups, typename IsIn, typename Product, typename Use>
 void ForGroups(const Groups& groups, const std::vector<int>& cluster, const IsIn& is_in,
                const Product& product, const Use& use) {
@@ -117,7 +118,7 @@ NormalEquations::Columns NormalEquations::NuisanceJacobian(int block) const {
   return problem_.Jacobian(block).middleCols(layout.nuisance, layout.width);
 }
 
-/// The Jacobians of blocks of the same unknowns, transposed: unknowns x rows.
+/// The transposed Jacobians of blocks with the same unknowns, side by side: unknowns x rows.
 Eigen::MatrixXd NormalEquations::OwnGradients(const std::vector<int>& blocks) const {
   Eigen::Index rows = 0;
   for (int block : blocks) rows += problem_.Residual(block).size();
@@ -173,7 +174,7 @@ void NormalEquations::EliminateNuisance() {
         D.noalias() += E.transpose() * E;
       }
       group->factor.compute(D);
-      // Six columns or so are too few for what Eigen does before larger products.
+      // About six columns are too few to pay for Eigen's preparation of large products.
       const Eigen::MatrixXd root =
           group->factor.matrixL().solve(Eigen::MatrixXd::Identity(group->size, group->size));
       const Eigen::MatrixXd scaled = columns.lazyProduct(root.transpose());
@@ -199,7 +200,8 @@ void NormalEquations::UpdateGradient() {
   gradient_.setZero(information_.rows());
   for (int block = 0; block < static_cast<int>(layout_.size()); ++block) {
     if (!is_active(block)) continue;
-    // What the nuisance leaves of it: of residuals with a tiny standard deviation almost nothing.
+    // The residual that the nuisance leaves. Of residuals with tiny standard deviations this is
+    // almost nothing.
     Eigen::VectorXd left = problem_.Residual(block);
     const int group = layout_[block].group;
     if (group >= 0) left.noalias() -= NuisanceJacobian(block) * groups_[group].own;

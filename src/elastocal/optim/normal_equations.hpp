@@ -11,17 +11,17 @@
 
 namespace elastocal {
 
-/// What a fit explains of the unit variance of each row, by residual block.
+/// Share of the unit variance of each row that a fit explains, one vector for each residual block.
 struct ExplainedRows {
   std::vector<Eigen::VectorXd> all;
-  std::vector<Eigen::VectorXd> by_nuisance;  ///< part of it that the nuisance would explain if the
-                                             ///< unknowns were known
+  std::vector<Eigen::VectorXd> by_nuisance;  ///< part of `all` that the nuisance would explain if
+                                             ///< the unknowns were known
 };
 
-/// The normal equations of a least-squares problem linearised at a point, its nuisance blocks
-/// eliminated (Schur complement), as H step = -gradient. With residuals in units of their standard
-/// deviations, the inverse of H is the covariance of the unknowns, the nuisance being unknown as
-/// well. The one linearisation that steps, uncertainty, variances and tests are made from.
+/// The normal equations H step = -gradient of a least-squares problem linearised at a point, with
+/// its nuisance blocks eliminated (Schur complement). If residuals are in units of their standard
+/// deviations, the inverse of H is the covariance of the unknowns when the nuisance is unknown as
+/// well. Steps, uncertainties, variances and tests all follow from this one linearisation.
 class NormalEquations {
  public:
   /// The problem must just have been evaluated with jacobians. Keeps a reference: residual blocks
@@ -29,56 +29,61 @@ class NormalEquations {
   explicit NormalEquations(const LeastSquaresProblem& problem);
 
   const std::vector<int>& unknowns() const { return unknowns_; }       ///< entries of x, ascending
-  const Eigen::MatrixXd& information() const { return information_; }  ///< of these
-  const Eigen::VectorXd& gradient() const { return gradient_; }        ///< of the cost by these
-  /// Takes the gradient anew, the problem having been evaluated with jacobians at another point:
-  /// near by, the information is much the same.
+  const Eigen::MatrixXd& information() const { return information_; }  ///< of the unknowns: H
+  const Eigen::VectorXd& gradient() const { return gradient_; }  ///< of the cost by the unknowns
+  /// Computes only the gradient anew, after the problem has been evaluated with jacobians at a
+  /// nearby point, where the information is nearly the same.
   void UpdateGradient();
-  /// By how much the cost falls by the nuisance alone, the unknowns staying.
+  /// Expected decrease of the cost by a step of the nuisance alone, while the unknowns stay.
   double NuisanceDecrease() const { return nuisance_decrease_; }
-  /// By how much it falls by all unknowns and the nuisance; `covariance`: inverse of information().
+  /// Expected decrease of the cost by a step of all unknowns and the nuisance. `covariance` is the
+  /// inverse of information().
   double Decrease(const Eigen::MatrixXd& covariance) const {
     return nuisance_decrease_ + 0.5 * gradient_.dot(covariance * gradient_);
   }
 
-  /// Where entries of x stand among the unknowns.
+  /// For entries of x, their positions among the unknowns.
   std::vector<int> Positions(const std::vector<int>& entries) const;
 
-  /// The step of all of x: that of the unknowns, and what the nuisance makes of it.
+  /// The step of all of x that belongs to a step of the unknowns: with the best step of the
+  /// nuisance.
   Eigen::VectorXd Expand(const Eigen::VectorXd& step) const;
 
-  /// Covariance of what is predicted for the rows of a residual block, given that of the unknowns:
-  /// for an active block the part of its unit covariance that the fit explains.
+  /// Covariance of the predicted rows of a residual block, from the `covariance` of the unknowns.
+  /// For an active block, this is the part of its unit covariance that the fit explains.
   Eigen::MatrixXd Explained(int block, const Eigen::MatrixXd& covariance) const;
 
-  /// Its diagonal, for all residual blocks (in less time than block by block).
+  /// Diagonal of Explained for all residual blocks, in less time than block by block.
   ExplainedRows ExplainedVariances(const Eigen::MatrixXd& covariance) const;
 
-  /// Parts of the gradient, J' Q r, that clusters of residual blocks make: unknowns x clusters.
-  /// `residuals`, by block, stand for those of the problem; `cluster`: of each block, -1: none.
-  /// Blocks that share a nuisance block belong to one cluster.
+  /// Contributions J' Q r of clusters of residual blocks to the gradient, unknowns x clusters.
+  /// `residuals` (one vector for each block) take the place of those of the problem. `cluster` is
+  /// the cluster of each block, -1: none. Blocks that share a nuisance block must be in one
+  /// cluster.
   Eigen::MatrixXd Scores(const std::vector<Eigen::VectorXd>& residuals,
                          const std::vector<int>& cluster, int clusters) const;
 
-  /// What is left of A, given in the rows of a residual block, beside the nuisance: with Q that
-  /// projects on what the nuisance does not explain, A' Q r, A' Q A and A' Q J.
+  /// Products of a matrix A, given in the rows of a residual block, with the nuisance taken out. Q
+  /// projects on what the nuisance does not explain, r is the residual, and J the Jacobian by the
+  /// unknowns.
   struct Score {
-    Eigen::VectorXd residual;     ///< columns of A
-    Eigen::MatrixXd information;  ///< columns of A, squared
-    Eigen::MatrixXd cross;        ///< columns of A x unknowns
+    Eigen::VectorXd residual;     ///< A' Q r, one entry for each column of A
+    Eigen::MatrixXd information;  ///< A' Q A, columns x columns of A
+    Eigen::MatrixXd cross;        ///< A' Q J, columns of A x unknowns
   };
   Score Project(int block, const Eigen::MatrixXd& A) const;
 
-  /// How much of one more unknown would explain what the residuals leave, all else being fitted
-  /// beside it (score test, Rao 1948).
+  /// Effect of one more unknown, if it were estimated together with all others (score test, Rao
+  /// 1948).
   struct Addition {
-    double value = 0.0;     ///< the estimate
-    double variance = 0.0;  ///< of it, where residuals have unit variance
-    double gain = 0.0;      ///< by which the sum of squares would fall
+    double value = 0.0;     ///< its estimate
+    double variance = 0.0;  ///< variance of the estimate, if residuals have unit variance
+    double gain = 0.0;      ///< decrease of the sum of squares
   };
-  /// What each of several further unknowns would bring, tried one by one. The derivative of the
-  /// residuals by each is `derivative` (by block), times a factor of its own in every cluster of
-  /// residual blocks: `factors`, clusters x unknowns tried. Clusters are those of Scores.
+  /// Effects of several further unknowns, tried one by one. The derivative of the residuals by each
+  /// is `derivative` (one vector for each block), times a factor for each cluster of residual
+  /// blocks: `factors`, clusters x unknowns tried. Clusters are those of Scores. An unknown whose
+  /// effect the others reproduce, all but 1e-6 of its square, has an Addition of zeros.
   std::vector<Addition> Add(const std::vector<Eigen::VectorXd>& derivative,
                             const std::vector<int>& cluster, const Eigen::MatrixXd& factors,
                             const Eigen::MatrixXd& covariance) const;
@@ -88,16 +93,16 @@ class NormalEquations {
   struct Group {
     std::vector<int> blocks;
     Eigen::Index first = 0;          ///< entry of x of the nuisance block
-    Eigen::Index row = 0, size = 0;  ///< of the nuisance among that of all groups
+    Eigen::Index row = 0, size = 0;  ///< place of the nuisance among that of all groups
     Eigen::LLT<Eigen::MatrixXd> factor;
     Eigen::VectorXd own;  ///< step of the nuisance = -(own + Gain x step of the unknowns)
   };
-  /// Where the derivatives of a residual block stand.
+  /// Layout of the derivatives of a residual block.
   struct Layout {
     int group = -1;                        ///< -1: without nuisance
-    Eigen::Index nuisance = 0, width = 0;  ///< its columns in the block's Jacobian
-    Eigen::Index own = 0;                  ///< first column of the others
-    std::vector<int> unknowns;             ///< where these stand among the unknowns
+    Eigen::Index nuisance = 0, width = 0;  ///< columns of the nuisance in the block's Jacobian
+    Eigen::Index own = 0;                  ///< first column of the unknowns
+    std::vector<int> unknowns;             ///< positions of these columns among the unknowns
   };
 
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

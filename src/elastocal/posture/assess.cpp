@@ -13,7 +13,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSingular = 1e-12;  // of eigenvalues, relative
+constexpr double kSingular = 1e-12;  // eigenvalues below this share of the largest are zero
 
 /// Standard deviations by eigenvalues. They are infinite for parameters that the set does not
 /// determine.

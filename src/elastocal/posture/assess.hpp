@@ -10,10 +10,10 @@
 
 namespace elastocal {
 
-/// How well a set of postures, whoever chose it, determines the parameters (paper section 7).
+/// How well a given set of postures determines the parameters (paper section 7).
 struct Assessment {
   ObservabilityIndices indices;  ///< all zero if the set does not determine all parameters
-  Certificate certificate;       ///< for the feasible set; its bound is 0 if O1 is
+  Certificate certificate;       ///< for the feasible set; its bound is 0 if O1 is 0
   double efficiency = 0.0;       ///< O1 over its upper bound
   /// For each identifiable parameter (column of Psi_b), the standard deviation that it would have
   /// from these postures alone, with `marker_sd` for a marker coordinate; infinite if they do not
@@ -27,12 +27,13 @@ struct Assessment {
 };
 
 struct AssessOptions {
-  double marker_sd = 2e-4;  ///< m, as motion capture reaches
+  double marker_sd = 2e-4;  ///< standard deviation of a marker coordinate, m
   int starts = 8;           ///< random starts of the search for `best_addition`
   std::uint64_t seed = 1;
   CertificateOptions certificate = {};
 };
 
+/// Assesses a set of postures, which need not be feasible.
 Assessment AssessPostures(PostureProblem& problem, const PostureSet& set,
                           const AssessOptions& options = {});
 

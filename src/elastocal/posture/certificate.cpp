@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kLeastWeight = 1e-6;  // a posture with less weight leaves the set
 constexpr int kWeightIterations = 300;
-constexpr double kWeightTolerance = 1e-3;  // of phi over the weighted postures, relative
+constexpr double kWeightTolerance = 1e-3;  // relative tolerance of phi over the weighted postures
 
 Eigen::MatrixXd Inverse(const Eigen::MatrixXd& M) {
   return M.llt().solve(Eigen::MatrixXd::Identity(M.rows(), M.cols()));

@@ -24,8 +24,8 @@ struct CertificateOptions {
   std::uint64_t seed = 1;
 };
 
-/// The equivalence theorem of Kiefer and Wolfowitz: with M the mean information of a weighted set,
-/// phi(q) = trace(Psi(q) M^-1 Psi(q)^T) and N_b columns,
+/// Certifies a set by the equivalence theorem of Kiefer and Wolfowitz. With M the mean information
+/// of a weighted set, phi(q) = trace(Psi(q) M^-1 Psi(q)^T) and N_b columns,
 ///
 ///   O1 of any set <= O1(M) sqrt(max_q phi(q) / N_b),
 ///

@@ -23,8 +23,8 @@ std::vector<int> PathCoordinates(const RobotTree& tree, int link) {
   return ChainCoordinates(tree, 0, link);
 }
 
-/// Spheres on links that the chain moves, but not on legs that stand: where they share a joint with
-/// the chain, their own joints keep the foot on the floor.
+/// Spheres on links that the chain moves, except on legs that stand. A standing leg that shares a
+/// joint with the chain keeps its foot on the floor by its own joints.
 std::vector<CollisionSphere> MovedSpheres(const RobotTree& tree, const MotionSetup& motion,
                                           const ChainSetup& chain) {
   const std::vector<int> own = JointsToBody(tree, tree.links[chain.tip_link].body);
@@ -82,8 +82,8 @@ MarkerVisibility MakeVisibility(const ErrorModel& model, const MotionSetup& moti
   };
 }
 
-/// Whether a chain can move from rest to a posture past the robot's own parts. Empty where nothing
-/// can touch, or touches at rest already.
+/// Makes a function that says whether a chain can move from rest to a posture past the robot's own
+/// parts. Empty if nothing can touch, or if parts touch at rest already.
 std::function<bool(const Eigen::VectorXd&)> MakeReachability(const RobotTree& tree,
                                                              const MotionSetup& motion,
                                                              const ChainSetup& chain) {
@@ -108,8 +108,8 @@ RootPose RootOf(const MotionSetup& motion) {
   return motion.free_root ? RootPose::kFree : RootPose::kConstant;
 }
 
-/// Keeps only the compliances that gravity excites in these postures (rows of q), and that can be
-/// told from the other parameters.
+/// Keeps only the compliances that gravity excites in these postures (rows of q) and whose effect
+/// differs from that of the other parameters.
 void KeepExcited(const ErrorModel& model, const MotionSetup& motion, const ChainSetup& chain,
                  const Eigen::MatrixXd& q, BaseParameters& base) {
   constexpr Eigen::Index kPostures = 100;
@@ -202,7 +202,7 @@ FeasibleSet MakeFeasibleSet(const RobotTree& tree, const MotionSetup& motion,
 BaseParameters FindChainParameters(const ErrorModel& model, const MotionSetup& motion,
                                    const ChainSetup& chain, IdentifiabilityOptions options) {
   for (const Parameter& parameter : model.parameters) {
-    // Rods are not weighed: what moves markers by them is not differentiated by the posture.
+    // Errors of rods are held, because their effect has no derivative by the posture here.
     if (parameter.linkage >= 0) options.hold.push_back(parameter.name);
     if (parameter.joint < 0) continue;
     if (!IsMovedBy(model.tree.joints[parameter.joint], chain.coordinates)) {

@@ -13,7 +13,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kMinusInfinity = -std::numeric_limits<double>::infinity();
-constexpr double kSingularPivot = 1e-13;  // of a pivot relative to its diagonal entry
+constexpr double kSingularPivot = 1e-13;  // least ratio of a pivot to its diagonal entry
 
 using Factor = Eigen::LLT<Eigen::MatrixXd>;
 

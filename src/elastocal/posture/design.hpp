@@ -12,8 +12,8 @@
 
 namespace elastocal {
 
-/// How postures are chosen. All except NOCP take the number of postures; COCP, IOOPS and exchange
-/// start from random feasible ones.
+/// The algorithm that chooses postures. All except NOCP take the number of postures as given; COCP,
+/// IOOPS and exchange start from random feasible postures.
 enum class DesignAlgorithm { kNocp, kCocp, kIoops, kExchange, kRandom };
 
 const char* AlgorithmName(DesignAlgorithm algorithm);  ///< nocp, cocp, ioops, exchange, random
@@ -28,7 +28,7 @@ struct DesignOptions {
   std::uint64_t seed = 1;
 };
 
-/// Asks for exactly so many postures, whatever the algorithm.
+/// Sets the options to exactly `count` postures for any algorithm (NOCP then has no plateau).
 void SetPostureCount(int count, DesignOptions& options);
 
 /// Calibration postures of one chain.
@@ -39,11 +39,11 @@ struct ChainDesign {
   std::string blame = {};  ///< the limit that leaves no feasible posture
   int parameter_count = 0;
   double index = 0.0;                ///< of the set
-  std::vector<int> sizes = {};       ///< number of postures after each addition ...
-  std::vector<double> indices = {};  ///< ... and its index
+  std::vector<int> sizes = {};       ///< number of postures after each addition
+  std::vector<double> indices = {};  ///< index of the set after each addition
   Certificate certificate = {};
   SamplingCount sampling = {};          ///< of the random postures drawn
-  std::string mirrored_from = {};       ///< the chain that it is the mirror image of
+  std::string mirrored_from = {};       ///< chain whose postures were mirrored; empty: none
   std::vector<std::string> notes = {};  ///< what a user should know
 
   double Efficiency() const { return certificate.bound > 0.0 ? index / certificate.bound : 0.0; }
@@ -55,9 +55,10 @@ ChainDesign DesignChain(const ErrorModel& model, const std::vector<int>& base,
                         const MotionSetup& motion, const ChainSetup& chain,
                         const DesignOptions& options);
 
-/// Mirrors the postures for the chain on the other side, to which model and set-up belong. They are
-/// checked anew: a posture that is not feasible there (limits and loads need not be symmetric) is
-/// replaced by a random one and optimised, and notes say so. The index is that of the other side.
+/// Mirrors the postures for the chain on the other side, to which `model`, `base` and `other`
+/// belong. Each is checked there: a posture that is not feasible (limits and loads need not be
+/// symmetric) is replaced by a random one and optimised, and `notes` say so. The index is that of
+/// the other side; the certificate is taken over from `design`.
 ChainDesign MirrorDesign(const ChainDesign& design, const MirrorMap& mirror,
                          const ErrorModel& model, const std::vector<int>& base,
                          const MotionSetup& motion, const ChainSetup& other,
@@ -70,7 +71,8 @@ struct CurvePoint {
   int postures = 0;
   double index = 0.0;
 };
-/// The index that the other algorithms reach with sets of these sizes, each from random postures.
+/// The index that COCP, IOOPS, exchange (for O1 only) and random design reach with sets of these
+/// sizes, each from random postures.
 std::vector<CurvePoint> CompareAlgorithms(const ErrorModel& model, const std::vector<int>& base,
                                           const MotionSetup& motion, const ChainSetup& chain,
                                           const std::vector<int>& sizes,

@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kArm = 0.3;  // m: a turn counts as the displacement that it gives there
+constexpr double kArm = 0.3;  // m: length by which displacements are divided
 constexpr double kNoMost = 1e3;
 constexpr double kLeastSingular = 1e-9;
 

@@ -7,16 +7,16 @@
 
 namespace elastocal {
 
-/// The least singular value of the Jacobian of a link: its displacement by 0.3 m and its rotation
-/// (rad), by the coordinates of `chain` in the present posture. Where it is small, an error of the
-/// link in the direction in which the chain can hardly move it asks the joints for that error over
-/// this value: the limb is stretched, or two of its axes are in line. 0 with fewer than six
-/// coordinates.
+/// The least singular value of the Jacobian of a link by the coordinates of `chain` in the present
+/// posture: rows are the displacement of the link's origin over 0.3 m, and its rotation in rad. It
+/// is small if the limb is stretched or two of its axes are in line. To correct an error of the
+/// link in the worst direction, the joints must move by that error over this value. 0 with fewer
+/// than six coordinates.
 double LeastSingularValue(const MovingChain& chain, int link);
 
-/// The end of a limb can be moved in all directions: the least singular value of its Jacobian stays
-/// above a share of what it is in the present posture of `chain`. For chains of six or more
-/// coordinates. Where two singular values are the least, the derivative is that of one of them.
+/// Keeps the end of a limb away from singular postures: LeastSingularValue stays above `share` of
+/// its value in the posture that `chain` has when the constraint is made. For chains of six or more
+/// coordinates. If the two least singular values are equal, the derivative is that of one of them.
 class Dexterity : public PostureConstraint {
  public:
   Dexterity(const MovingChain& chain, int link, double share);

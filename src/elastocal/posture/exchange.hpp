@@ -13,18 +13,18 @@ struct ExchangeOptions {
   int max_rounds = 100;
 };
 
-/// Draws `count` random feasible postures; of fewer, `result` gets the reason.
+/// Draws `count` random feasible postures. If there are fewer, `result` gets the reason.
 std::vector<Eigen::VectorXd> DrawPool(PostureProblem& problem, int count, std::uint64_t seed,
                                       DesignResult& result);
 
-/// A baseline, which most tools offer: chooses `postures` postures of a pool of random feasible
-/// ones by exchange (Mitchell's DETMAX). It adds the candidate that raises O1 most and drops the
-/// posture that costs least, until these are the same. A candidate may be chosen more than once.
-/// For O1 only (std::invalid_argument otherwise).
+/// Exchange, a baseline for comparison: chooses `postures` postures from a pool of random feasible
+/// ones (Mitchell's DETMAX). It adds the candidate that raises O1 most and drops the posture whose
+/// removal costs least, until these are the same. A candidate may be chosen more than once. For O1
+/// only (std::invalid_argument otherwise).
 DesignResult ExchangeDesign(PostureProblem& problem, int postures, std::uint64_t seed,
                             const ExchangeOptions& options = {});
 
-/// The other baseline: random feasible postures, as drawn.
+/// Random design, a baseline for comparison: random feasible postures, as drawn.
 DesignResult RandomDesign(PostureProblem& problem, int postures, std::uint64_t seed);
 
 }  // namespace elastocal

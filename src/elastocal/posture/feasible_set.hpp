@@ -23,7 +23,7 @@ struct FeasibleSet {
   int end_link = 0;  ///< link by whose pose random postures are drawn
   bool has_workspace = false;
   Workspace workspace = {};
-  /// Whether the robot can move there from rest past its own parts; empty: anywhere.
+  /// Whether the robot can move from rest to a posture past its own parts. Empty: to any posture.
   std::function<bool(const Eigen::VectorXd& x)> reachable = {};
   int repair_joints = 3;  ///< number of first coordinates that move to separate spheres
 
@@ -37,8 +37,8 @@ struct FeasibleSet {
 void EvaluateConstraints(FeasibleSet& set, const Eigen::VectorXd& x, Eigen::VectorXd& values,
                          Eigen::MatrixXd& jacobian);
 
-/// The limit that a posture breaks most, and by how much; 0 if it is feasible. One that keeps all
-/// limits and cannot be reached breaks the way to it, by 1.
+/// The limit that a posture breaks most, and by how much; 0 if the posture is feasible. A posture
+/// that keeps all limits but cannot be reached has the amount 1.
 struct Violation {
   double amount =
       0.0;  ///< rad or m for limits of coordinates, otherwise in units of the PostureConstraint
@@ -48,6 +48,7 @@ struct Violation {
   /// What a posture does, as the end of a sentence: "breaks the limit of arm_1_joint by 0.12".
   std::string Describe() const;
 };
+/// The worst violation by posture x.
 Violation WorstViolation(FeasibleSet& set, const Eigen::VectorXd& x);
 
 inline constexpr double kFeasible = 1e-6;  ///< largest violation of a feasible posture

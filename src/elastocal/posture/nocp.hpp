@@ -9,9 +9,9 @@
 
 namespace elastocal {
 
-/// A set is large enough if two additions in turn raise the index by less than `tolerance`,
-/// relative to the index before them; these two additions are then dropped. (O1 is the root of the
-/// information of an average posture: it reaches a plateau and is not monotone.)
+/// When a set is large enough: two additions in turn raise the index by less than `tolerance`,
+/// relative to the index before them. These two additions are then dropped. (O1 is a root of the
+/// information of an average posture; it reaches a plateau and need not rise with each addition.)
 struct PlateauRule {
   double tolerance = 3e-3;  ///< if negative, the set grows to max_postures
   int max_postures = 48;    ///< the set grows no further in any case

@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-/// The log of the index as a function of some postures, which stand one behind the other in x.
+/// The log of the index as a function of some postures, which are stacked in x.
 class IndexProgram : public NonlinearProgram {
  public:
   IndexProgram(PostureProblem& problem, const std::vector<int>& which, const PostureSet& set)

@@ -19,8 +19,8 @@ namespace elastocal {
 /// joints (eq. 5) act under the weight of what the joints carry. Those of a leg (eq. 6) move the
 /// root link and all markers, under the weight of the whole robot, which stands on that leg alone.
 ///
-/// Where the root link is free, Psi_b is what no displacement of the whole robot explains (see
-/// RootProjection); columns of T0 are zero.
+/// If the root link is free, Psi_b is the part that no displacement of the whole robot explains
+/// (see RootProjection); columns of T0 are then zero.
 class PostureRegressor {
  public:
   /// `base` lists the columns: indices into the model's parameters, ascending. Torque biases, and
@@ -66,7 +66,7 @@ class PostureRegressor {
     Eigen::Vector3d Of(const Eigen::Vector3d& p) const { return axis.cross(p) + translation; }
   };
   void LayOut(const MovingChain& chain);
-  /// Weights of the columns `base_` before the projection, for weights after it.
+  /// Weights of the columns `base_` before the projection that correspond to weights after it.
   Eigen::MatrixXd Unprojected(const Eigen::MatrixXd& weight) const;
   double Load(int parameter) const;
   double LoadOn(const LegColumn& column, const Eigen::VectorXd& q) const;

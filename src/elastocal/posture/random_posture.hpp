@@ -13,11 +13,11 @@
 
 namespace elastocal {
 
-/// How many draws the random postures took.
+/// Number of draws that random postures took.
 struct SamplingCount {
-  long tries = 0;
-  long feasible_at_once = 0;  ///< without repair
-  long found = 0;
+  long tries = 0;             ///< draws
+  long feasible_at_once = 0;  ///< draws that were feasible without repair
+  long found = 0;             ///< draws that were feasible, repaired or not
   double Yield() const { return tries > 0 ? static_cast<double>(found) / tries : 0.0; }
 };
 

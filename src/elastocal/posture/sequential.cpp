@@ -20,9 +20,9 @@ double LogDetPlusOne(Eigen::MatrixXd M) {
   return 2.0 * Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum();
 }
 
-/// What is known beforehand, with its covariance P = L L' in units of the standard deviations
-/// (angles and compliances differ by orders of magnitude). Data of information A are worth
-/// B = L'AL beside it.
+/// The prior knowledge, with its covariance P = L L' in units of the standard deviations (angles
+/// and compliances differ by orders of magnitude). B = L'AL is the worth of data with the
+/// information A, relative to the prior.
 class Knowledge {
  public:
   explicit Knowledge(const PriorKnowledge& prior)
@@ -45,8 +45,8 @@ class Knowledge {
     return root_.matrixU() * Eigen::MatrixXd(reach.transpose());
   }
 
-  /// What the data say of changes, beside the parameters: A - A (A + P^-1)^-1 A, which is
-  /// L^-T B (I + B)^-1 L^-1. Of the parameters that may change.
+  /// Information of the data on changes of the parameters that may change, when the parameters are
+  /// as uncertain as P: A - A (A + P^-1)^-1 A, which is L^-T B (I + B)^-1 L^-1.
   Eigen::MatrixXd OfChanges(const Eigen::MatrixXd& worth) const {
     const Eigen::MatrixXd columns = inverse_root_(Eigen::all, changing_);
     Eigen::MatrixXd all = worth;
@@ -54,7 +54,7 @@ class Knowledge {
     return (worth * columns).transpose() * Eigen::LLT<Eigen::MatrixXd>(all).solve(columns);
   }
 
-  /// Nats that the data are expected to tell.
+  /// Information that the data are expected to give, nats.
   double Told(const Eigen::MatrixXd& worth, SequentialAim aim) const {
     if (aim == SequentialAim::kParameters) return LogDetPlusOne(worth);
     const Eigen::VectorXd size = change_(changing_);
@@ -82,7 +82,7 @@ class Search {
     sum_ = Eigen::MatrixXd::Zero(columns, columns);
   }
 
-  /// The candidate that gives most, added to what is there.
+  /// The candidate that gives most information when added to the postures chosen so far.
   int Best(double& most) const {
     int best = -1;
     for (std::size_t i = 0; i < worth_.size(); ++i) {

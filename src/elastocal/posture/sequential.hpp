@@ -15,10 +15,10 @@ struct PriorKnowledge {
   double marker_sd = 3e-4;  ///< of a coordinate, m
 };
 
-/// What postures shall tell.
+/// What the postures are chosen to determine.
 enum class SequentialAim {
-  kParameters,  ///< all parameters, beside what is known (Bayesian D-optimality)
-  kChanges,     ///< sudden changes, whatever else is uncertain
+  kParameters,  ///< all parameters, given the prior knowledge (Bayesian D-optimality)
+  kChanges,     ///< sudden changes, while all else is as uncertain as the prior says
 };
 
 struct SequentialOptions {
@@ -28,20 +28,23 @@ struct SequentialOptions {
   SequentialAim aim = SequentialAim::kParameters;
 };
 
-/// The information that postures with `data` (sum of Psi'Psi over the variance of a coordinate) are
-/// expected to give on the aim, nats: log det(I + L' data L) with the covariance L L'; on changes
-/// of standard deviations w, log det(I + w M w) with M the data's information on the changes beside
-/// the parameters.
+/// Information that postures are expected to give on the aim, nats. `data` is the sum of Psi'Psi
+/// over the variance of a marker coordinate.
+/// - kParameters: log det(I + L' data L) with the prior covariance L L';
+/// - kChanges: log det(I + w M w) with the standard deviations w of the changes and the information
+///   M of the data on the changes, when the parameters are as uncertain as the prior says.
 double ExpectedInformation(const PriorKnowledge& prior, const Eigen::MatrixXd& data,
                            SequentialAim aim);
 
-/// Standard deviation with which postures tell a sudden change of each parameter, all else being as
-/// uncertain as is known; infinite where no change is expected or nothing tells it.
+/// Standard deviation with which postures determine a sudden change of each parameter, while all
+/// else is as uncertain as the prior says. Infinite if no change is expected or the data do not
+/// determine it.
 Eigen::VectorXd ChangeDeviations(const PriorKnowledge& prior, const Eigen::MatrixXd& data);
 
-/// Chooses postures of a pool of random feasible ones: each time the one that gives most
-/// information, then any exchange that gives more. The same seed gives the same postures.
-/// `DesignResult::indices` has the information after each addition.
+/// Chooses postures from a pool of random feasible ones. It adds the posture that gives most
+/// information (ExpectedInformation), one after the other, and then exchanges postures as long as
+/// this gives more. The same seed gives the same postures. `DesignResult::indices` has the
+/// information after each addition, nats.
 DesignResult SequentialDesign(PostureProblem& problem, const PriorKnowledge& prior,
                               std::uint64_t seed, const SequentialOptions& options = {});
 

@@ -61,7 +61,8 @@ void ReadChains(const YamlValue& section, Project& project) {
   }
 }
 
-/// Patterns can only be checked when joints and markers are known.
+/// Checks the patterns of held parameters, which is possible only when joints and markers are
+/// known.
 void CheckHeld(const YamlValue& section, const Project& project) {
   const auto hold = section.Find("hold");
   if (!hold || project.identifiability.hold.empty() || project.contact) return;
@@ -199,7 +200,7 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
 std::vector<std::string> ChainMarkers(const Project& project, const Chain& chain) {
   const RobotTree& tree = project.tree;
   std::vector<int> joints = JointsToBody(tree, tree.links[chain.tip_link].body);
-  // Of the joints to the tip those count that come after the body of `from`.
+  // Of the joints to the tip, only those after the body of `from` count.
   const auto from = std::find(joints.begin(), joints.end(), tree.links[chain.from_link].body - 1);
   if (from != joints.end()) joints.erase(joints.begin(), from + 1);
   std::vector<std::string> names;

@@ -31,7 +31,7 @@ void ReadCouplings(const YamlValue& section, Project& project) {
   std::vector<Coupling> couplings;
   for (const YamlValue& value : section.Items()) {
     couplings.push_back(ReadCoupling(value, project.tree));
-    // Here already, so that what is wrong is said of this coupling.
+    // Called for each coupling, so that an error is reported with this one.
     FindNamedBy(value, [&] { return Couple(project.tree, couplings); });
   }
   project.tree = Couple(project.tree, couplings);

@@ -21,7 +21,7 @@ std::string InstrumentName(const YamlValue& value, const Project& project) {
   return name.Text();
 }
 
-/// An instrument that is about one point of a link.
+/// Reads the link and the point of an instrument that is about one point of a link.
 template <typename Setup>
 void ReadPointOfLink(const YamlValue& value, const Project& project, Setup& setup) {
   setup.name = InstrumentName(value, project);
@@ -152,7 +152,8 @@ void ReadWire(const YamlValue& value, Project& project) {
   TakeColumns(value, {""}, project);
 }
 
-/// Quantities and sources are told apart by their names, in the files of a calibration too.
+/// Checks that all quantities and sources have different names, by which they are identified, also
+/// in the files of a calibration.
 void CheckNames(const YamlValue& section, const ObservationSetup& setup) {
   const auto check = [&](const auto& items) {
     std::set<std::string> names;

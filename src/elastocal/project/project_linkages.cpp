@@ -44,7 +44,8 @@ std::string NewMotor(const YamlValue& value, const Linkage& linkage, const Robot
   return name;
 }
 
-/// What of a rod is in error, where the project does not say: what makes up for displaced axes too.
+/// Uncertain quantities of a rod if the project does not name them. They also compensate for
+/// displaced axes.
 std::vector<RodUncertainty> UsuallyUncertain(const Rod& rod) {
   std::vector<RodUncertainty> usual = {{RodQuantity::kLength, kUsualLength}};
   if (!rod.actuator) usual.push_back({RodQuantity::kZero, kUsualZero});
@@ -120,8 +121,8 @@ Linkage ReadLinkage(const YamlValue& value, const RobotTree& tree) {
   return linkage;
 }
 
-/// Positions of the linkage's joints at all combinations of a few within their limits; of many
-/// joints at the corners.
+/// Positions of the linkage's joints on a grid within their limits: five values for each of up to
+/// two joints, the two limits for each of more.
 std::vector<Eigen::VectorXd> GridWithinLimits(const RobotTree& tree, const Linkage& linkage) {
   const int steps = linkage.joints.size() <= 2 ? 4 : 1;
   std::vector<Eigen::VectorXd> grid = {linkage.assembled};
@@ -141,7 +142,7 @@ std::vector<Eigen::VectorXd> GridWithinLimits(const RobotTree& tree, const Linka
   return grid;
 }
 
-/// What the joints' limits allow and the rods do not.
+/// Warns of positions that the joints' limits allow and the rods do not.
 void WarnOfReach(const Linkage& linkage, RobotTree& tree) {
   for (const Eigen::VectorXd& positions : GridWithinLimits(tree, linkage)) {
     const auto motors = MotorPositions(tree, linkage, positions);

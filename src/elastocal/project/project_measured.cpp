@@ -99,7 +99,8 @@ void ReadColumns(const YamlValue& section, Project& project) {
   }
 }
 
-/// Positions of joints of one type; `unit` is what one of the file's units is in rad or m.
+/// Reads the positions of joints of one type that are not recorded; `unit` is the file's unit in
+/// rad or m.
 void ReadNotRecorded(const YamlValue& section, JointType type, double unit, Project& project) {
   for (const auto& [name, value] : section.Entries()) {
     const int joint = DriverNamedBy(name, value, project.tree);
@@ -179,7 +180,7 @@ void ReadForceTorqueSensors(const YamlValue& section, Project& project) {
   }
 }
 
-/// By what points up: x, y, z, -x, -y, -z, or a direction [x, y, z].
+/// Gravity, from what points up: x, y, z, -x, -y, -z, or a direction [x, y, z].
 Eigen::Vector3d ReadGravity(const YamlValue& up) {
   if (!up.IsScalar()) return -GravityBelow("z").norm() * DirectionFrom(up);
   up.Expect(IsAxis(up.Text()), "x, y, z, -x, -y, -z or three numbers");

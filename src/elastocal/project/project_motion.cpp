@@ -76,10 +76,11 @@ ChainSetup ReadChainSetup(const YamlValue& value, const Project& project) {
   return setup;
 }
 
-/// A lifted leg with less is a leg whose foot joints can hardly put where it belongs (Dexterity).
+/// Usual ChainSetup::dexterity_share of a lifted leg: with less, its joints can hardly put the foot
+/// where it belongs (Dexterity).
 constexpr double kDexterityShare = 0.5;
 
-/// Where joints may be, with a share of the range left free at either end.
+/// Sets the limits of all joints (PostureRange), with a share of the range left free at either end.
 void SetLimits(const RobotTree& tree, double margin, MotionSetup& motion) {
   motion.lower.resize(tree.coordinate_count());
   motion.upper.resize(tree.coordinate_count());
@@ -89,7 +90,7 @@ void SetLimits(const RobotTree& tree, double margin, MotionSetup& motion) {
   }
 }
 
-/// A joint that counts turns is moved in the turn about its position of rest.
+/// Centres the limits of joints that count turns at their positions of rest.
 void CentreTurns(const YamlValue& section, const RobotTree& tree, double margin,
                  MotionSetup& motion) {
   for (const auto& [name, value] : section.Entries()) {
@@ -112,8 +113,8 @@ void ReadRest(const YamlValue& section, const RobotTree& tree, MotionSetup& moti
   }
 }
 
-/// Ranges of joints that are narrower than their limits; of a joint that counts turns, the turn
-/// too.
+/// Reads ranges of joints that are narrower than their limits; for a joint that counts turns, the
+/// range also chooses the turn.
 void ReadRanges(const YamlValue& section, const RobotTree& tree, double margin,
                 MotionSetup& motion) {
   for (const auto& [name, value] : section.Entries()) {
@@ -192,7 +193,7 @@ void ReadCollision(const YamlValue& section, Project& project) {
 }
 
 void CarryRest(Project& project) {
-  constexpr double kMostAtRest = 0.8;  // of an effort: planned motions use 0.9, to accelerate
+  constexpr double kMostAtRest = 0.8;  // share of an effort; planned motions may use 0.9
   const Eigen::VectorXd torques = GravityTorques(project.tree, project.motion.rest);
   for (int c = 0; c < project.tree.coordinate_count(); ++c) {
     Joint& joint = project.tree.joints[Size(project.tree.coordinate_joint[Size(c)])];

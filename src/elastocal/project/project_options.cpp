@@ -40,7 +40,7 @@ void ReadPrior(const YamlValue& section, Prior& prior) {
   }
 }
 
-/// One of a few words, where the section has the key.
+/// Reads one of a few words, if the section has the key.
 template <typename Enum>
 void ReadChoice(const YamlValue& section, const char* key, Enum& option,
                 const std::vector<std::pair<std::string, Enum>>& choices) {
@@ -60,7 +60,7 @@ void ReadChoice(const YamlValue& section, const char* key, Enum& option,
               "; expected " + listed);
 }
 
-/// Joints, ascending, whose names match a pattern.
+/// Reads patterns of names of joints, each of which must match a joint.
 void ReadPatterns(const YamlValue& section, const char* key, const RobotTree& tree,
                   std::optional<std::vector<std::string>>& patterns) {
   const auto list = section.Find(key);
@@ -74,7 +74,7 @@ void ReadPatterns(const YamlValue& section, const char* key, const RobotTree& tr
   }
 }
 
-/// auto, none, or a list of causes.
+/// Reads `auto`, `none`, or a list of causes.
 void ReadExtra(const YamlValue& value, ExtraCauses& extra) {
   extra.automatic = false;
   if (!value.IsScalar()) {
@@ -85,7 +85,8 @@ void ReadExtra(const YamlValue& value, ExtraCauses& extra) {
   value.Expect(extra.automatic || value.Text() == "none", "auto, none or a list of causes");
 }
 
-/// prior, nominal_markers, or "link NAME" with a link that a joint on the root link carries.
+/// Reads `prior`, `nominal_markers`, or "link NAME" with a link that a joint on the root link
+/// carries.
 void ReadGauge(const YamlValue& value, const RobotTree& tree, Gauge& gauge) {
   constexpr std::string_view kLinkWord = "link ";
   const std::string text = value.Text();

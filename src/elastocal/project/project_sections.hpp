@@ -11,8 +11,9 @@
 
 namespace elastocal {
 
-/// Parts of a project file, in the order in which they are read: each reads the section of its name
-/// into `project` and needs those before it. All throw InputError naming file, line and key.
+/// Readers of the sections of a project file, in the order in which they are called. Each reads the
+/// section of its name into `project` and needs the sections before it. All throw InputError naming
+/// file, line and key.
 void ReadCouplings(const YamlValue& section, Project& project);
 void ReadLinkages(const YamlValue& section, Project& project);
 void ReadMarkers(const YamlValue& section, Project& project);
@@ -24,20 +25,21 @@ void ReadMeasurementOptions(const YamlValue& section, MeasurementOptions& option
 void ReadIdentifiabilityOptions(const YamlValue& section, IdentifiabilityOptions& options);
 void ReadElasticity(const YamlValue& section, Project& project);
 void ReadStanding(const YamlValue& section, Project& project);
-/// Spheres; then what `design` and `plan` need: limits, the posture at rest, chains.
+/// SetMotionDefaults sets the limits of all joints and the posture of rest, which `design` and
+/// `plan` need. ReadCollision then reads the spheres, and ReadDesign the section `design`.
 void SetMotionDefaults(Project& project);
 void ReadCollision(const YamlValue& section, Project& project);
 void ReadDesign(const YamlValue& section, Project& project);
-/// A robot holds its posture of rest: efforts that gravity would nearly use up in it, while the
-/// root link is held, are raised with a warning.
+/// Raises efforts of joints, with a warning, if gravity takes more than 80 % of them in the posture
+/// of rest while the root link is held: a robot can hold its posture of rest.
 void CarryRest(Project& project);
-/// `instruments`: whether there are others than plates.
+/// `instruments`: whether the project has instruments other than plates.
 void ReadContact(const YamlValue& section, bool instruments, Project& project);
 void ReadInstruments(const YamlValue& section, Project& project);
-/// Of the same section: cameras, tags, and every camera's view of every tag that can move against
-/// it.
+/// Reads the cameras and tags of the section `instruments`, and adds each camera's view of each tag
+/// that can move against it.
 void ReadCameras(const YamlValue& section, Project& project);
-/// Makes the markers, whose columns have been read, instruments like others.
+/// Adds the markers, whose columns have been read, to the instruments.
 void ObserveMarkers(Project& project);
 void ReadCalibrationOptions(const YamlValue& section, const RobotTree& tree,
                             CalibrationOptions& options);
@@ -47,7 +49,7 @@ constexpr double kOneMm = 1e-3;              // m
 
 constexpr std::size_t kMostInstruments = 1000;
 
-/// The items of a list of the section `instruments`; none where the key is absent.
+/// The items of a list in the section `instruments`; none if the key is absent.
 std::vector<YamlValue> InstrumentList(const YamlValue& section, const char* key);
 
 /// `size` numbers of a list, each within its bounds.
@@ -55,14 +57,14 @@ Eigen::VectorXd NumbersOf(const YamlValue& list, std::size_t size);
 
 /// Three coordinates in mm as a point in m.
 Eigen::Vector3d PointFromMm(const YamlValue& value);
-/// The same of a key, or the origin without it.
 /// A direction of length 1 from three numbers.
 Eigen::Vector3d DirectionFrom(const YamlValue& value);
+/// PointFromMm of the value of a key; the origin if there is no such key.
 Eigen::Vector3d OptionalPoint(const YamlValue& value, const char* key);
 /// A pose [m] from the keys `xyz_mm` and `rpy_deg`, each of which may be absent.
 Transform PoseFromMm(const YamlValue& value);
 
-/// What `find` returns; the InputError that it throws is said of `value`.
+/// Returns what `find` returns. An InputError that it throws is thrown again as one about `value`.
 template <typename Find>
 auto FindNamedBy(const YamlValue& value, const Find& find) {
   try {
@@ -72,7 +74,8 @@ auto FindNamedBy(const YamlValue& value, const Find& find) {
   }
 }
 
-/// The name of a new item: no text where one of `items` has it already. `what` is what they are.
+/// The name of a new item. Throws InputError if one of `items` has the name already. `what` says
+/// what the items are.
 template <typename Items>
 std::string NewName(const YamlValue& name, const char* what, const Items& items) {
   for (const auto& item : items) {
@@ -83,16 +86,16 @@ std::string NewName(const YamlValue& name, const char* what, const Items& items)
   return name.Text();
 }
 
-/// Fails unless the text can name a file: letters, digits, underscore, point and hyphen, and not
-/// only one or two points. So no file lands outside of its folder.
+/// Fails unless the text can be part of a file's name and leads to no other folder: letters,
+/// digits, underscore, point and hyphen, but not only one or two points.
 void CheckFileName(const YamlValue& name);
 
 /// The link, links or movable joint that a value names.
 int LinkNamedBy(const YamlValue& value, const RobotTree& tree);
 std::vector<int> LinksNamedBy(const YamlValue& list, const RobotTree& tree);
 int JointNamedBy(const YamlValue& value, const RobotTree& tree);
-/// The joint `name`, a key whose value is `value`, with a position of its own: what another joint
-/// decides cannot be recorded or given.
+/// The joint `name`, a key whose value is `value`. It must have a position of its own, because a
+/// position that follows from other joints cannot be recorded or given.
 int DriverNamedBy(const std::string& name, const YamlValue& value, const RobotTree& tree);
 /// The chain that a value names: index into Project::chains.
 int ChainNamedBy(const YamlValue& value, const Project& project);

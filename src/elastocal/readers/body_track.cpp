@@ -12,10 +12,10 @@ namespace elastocal {
 namespace {
 
 constexpr std::size_t kPose = 7;
-constexpr double kLongestStep = 1.5;  // intervals that are no gap
-constexpr double kSameMoment = 0.02;  // intervals
+constexpr double kLongestStep = 1.5;  // intervals; longer steps are gaps
+constexpr double kSameMoment = 0.02;  // intervals; closer stamps are of one moment
 
-/// In the order of the stamps, each once.
+/// Sorts a track by its stamps and keeps each stamp once.
 void SortTrack(BodyTrack& track) {
   std::vector<std::size_t> order(track.stamps_ns.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -33,7 +33,7 @@ void SortTrack(BodyTrack& track) {
   track = std::move(sorted);
 }
 
-/// 0 where there are fewer than two.
+/// Median interval between stamps, ns; 0 for fewer than two.
 double MedianInterval(const BodyTrack& track) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < track.stamps_ns.size(); ++i) {
@@ -58,7 +58,7 @@ void Interpolate(const BodyTrack& track, std::int64_t start, double interval, Ei
     while (next < track.stamps_ns.size() && since(next) < -kSameMoment * interval) ++next;
     if (next == track.stamps_ns.size()) break;
     const double after = since(next);
-    double share = 1.0;  // of the pose `next`
+    double share = 1.0;  // share of the later pose
     if (after > kSameMoment * interval) {
       if (next == 0) continue;
       const double step = after - since(next - 1);

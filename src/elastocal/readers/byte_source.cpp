@@ -28,8 +28,8 @@ constexpr std::size_t kStreamBlock = 1u << 18;
 
 constexpr const char* kMetadata = "metadata.yaml";
 
-/// Throws InputError for a file of the bag's kind beside those that metadata.yaml lists: what is in
-/// it would be missing.
+/// Throws InputError for a file of the bag's kind that metadata.yaml does not list, because its
+/// contents would be missing.
 void RefuseUnlisted(const std::filesystem::path& folder,
                     const std::vector<std::filesystem::path>& pieces, const YamlValue& list) {
   std::error_code error;
@@ -56,7 +56,7 @@ std::vector<std::filesystem::path> BagPieces(const std::filesystem::path& folder
   std::error_code error;
   for (const YamlValue& item : list.Items()) {
     std::filesystem::path piece = folder / item.Text();
-    // Packed as a whole by rosbag2, and unpacked since.
+    // rosbag2 packed the file as a whole, and somebody has unpacked it since.
     if (piece.extension() == ".zstd" && !std::filesystem::exists(piece, error)) {
       piece.replace_extension();
     }
@@ -132,7 +132,7 @@ ByteSource ByteSource::Open(const std::filesystem::path& file) {
   ByteSource source;
   source.name_ = file.string();
   source.path_ = file;
-  // Does not wait for somebody at the other end of a pipe.
+  // O_NONBLOCK: does not wait for somebody at the other end of a pipe.
   const int descriptor = open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) FailToOpen(source.name_, errno);
   source.descriptor_ = std::shared_ptr<const int>(new int(descriptor), [](const int* open_file) {

@@ -15,13 +15,13 @@
 
 namespace elastocal {
 
-/// The bytes of a file or of a text in memory, read where they are asked for, so that a large file
-/// takes no more memory than what is kept of it.
+/// The bytes of a file or of a text in memory. They are read only where they are asked for, so that
+/// a large file takes no more memory than the data that are kept.
 class ByteSource {
  public:
-  /// The folder of a bag (IsBagFolder) is the bag in it: its first piece, with all of them in
-  /// `pieces`. Throws InputError naming the file: there is none, it is no regular
-  /// file, it cannot be read.
+  /// Opens a file, or the bag in a folder (IsBagFolder): the source is then the bag's first piece,
+  /// and `pieces` has all of them. Throws InputError naming the file: it does not exist, is no
+  /// regular file, or cannot be read.
   static ByteSource Open(const std::filesystem::path& file);
   /// The bytes must outlive the source; `name` stands for the file in messages.
   static ByteSource OfMemory(std::string_view bytes, std::string name);
@@ -31,12 +31,13 @@ class ByteSource {
   /// The path of a file; empty for bytes in memory, which `memory` then has.
   const std::filesystem::path& path() const { return path_; }
   std::string_view memory() const { return memory_; }
-  /// Of the folder of a bag: the files that hold one recording together. Empty for anything else.
+  /// The files of a bag's folder that hold one recording together. Empty for any other source.
   const std::vector<std::filesystem::path>& pieces() const { return pieces_; }
 
   /// Reads from `offset` on, at most to the end; gives the number of bytes read.
   std::size_t Read(std::uint64_t offset, std::span<char> to) const;
-  /// Throws InputError naming the offset where the source ends before; `what` is being read.
+  /// Reads all of `to`. Throws InputError naming the offset if the source ends before; `what` says
+  /// what is being read.
   void ReadAll(std::uint64_t offset, std::span<char> to, const std::string& what) const;
 
   /// Throws InputError: "NAME: byte OFFSET: MESSAGE".
@@ -56,11 +57,11 @@ class ByteSource {
 /// Whether `ros2 bag record` wrote this folder: it holds a metadata.yaml.
 bool IsBagFolder(const std::filesystem::path& folder);
 
-/// How many messages of each topic metadata.yaml in the folder of a bag states; nothing where it
-/// states none, or this is no such folder.
+/// Number of messages of each topic by metadata.yaml in the folder of a bag; empty if it states
+/// none, or if this is no such folder.
 std::map<std::string, double> StatedMessages(const std::filesystem::path& folder);
 
-/// The files that are read of a recording: itself, or what is in the folder of a bag.
+/// The files that are read for a recording: the file itself, or those in the folder of a bag.
 std::vector<std::filesystem::path> FilesOfRecording(const std::filesystem::path& recording);
 
 /// Calls `read` with each piece of a bag's folder, or with any other source itself.
@@ -70,7 +71,7 @@ void ForEachPiece(const ByteSource& source, const Read& read) {
   for (const auto& piece : source.pieces()) read(ByteSource::Open(piece));
 }
 
-/// Such bytes as a text that is read from its beginning to its end. The source must outlive it.
+/// A ByteSource as a stream that is read from beginning to end. The source must outlive it.
 class SourceStream : private std::streambuf, public std::istream {
  public:
   explicit SourceStream(const ByteSource& source);

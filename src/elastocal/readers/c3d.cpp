@@ -19,7 +19,7 @@ namespace {
 constexpr double kWord = 65536.0;
 constexpr std::uint64_t kC3dBlockSize = 512;
 
-/// Where the data are and how they are laid out.
+/// Place and layout of the data.
 struct C3dLayout {
   std::size_t points = 0;        ///< of a frame, 4 numbers each
   std::size_t analog = 0;        ///< analogue numbers of a frame, behind the points
@@ -93,7 +93,8 @@ class C3dReader {
     if (layout_.points == 0) throw InputError(source_.name() + ": POINT:USED is 0: no points");
   }
 
-  /// Counts above 65535 do not fit where the format had them at first; makers found several places.
+  /// Number of frames. Counts above 65535 do not fit into the original field of the format, and
+  /// makers store them in several other places.
   std::uint64_t FrameCount() {
     const std::uint64_t bytes =
         source_.size() > layout_.first_byte ? source_.size() - layout_.first_byte : 0;

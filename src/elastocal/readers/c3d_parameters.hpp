@@ -32,9 +32,9 @@ struct C3dParameters {
   std::map<std::string, C3dParameter> values;
 
   const C3dParameter* Find(const std::string& name) const;
-  /// The first text, without spaces around it; empty where there is none.
+  /// The first text, without spaces around it; empty if there is none.
   std::string Text(const std::string& name) const;
-  /// Number i, integers as unsigned ones; `otherwise` where there is none.
+  /// Number i, with integers taken as unsigned; `otherwise` if there is none.
   double Unsigned(const std::string& name, double otherwise, std::size_t i = 0) const;
 };
 

@@ -11,9 +11,9 @@
 
 namespace elastocal {
 
-/// Reads the fields of a message one after the other: CDR of DDS (ROS 2; of both byte orders, of
-/// versions 1 and 2), or ROS 1's own. Throws InputError beginning with `place` where it ends too
-/// early.
+/// Reads the fields of a message one after the other, in CDR of DDS (ROS 2; both byte orders,
+/// versions 1 and 2) or in the format of ROS 1. Throws InputError beginning with `place` if the
+/// message ends too early.
 class MessageFields {
  public:
   MessageFields(std::span<const char> bytes, bool cdr, std::string place)
@@ -34,7 +34,7 @@ class MessageFields {
     return value;
   }
 
-  /// The length of a list whose items have at least so many bytes.
+  /// Reads the length of a list whose items have at least `least_bytes` bytes each.
   std::uint32_t Count(std::size_t least_bytes) {
     const std::uint32_t count = U32();
     if (count > (bytes_.size() - at_) / least_bytes) {

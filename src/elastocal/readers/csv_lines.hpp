@@ -19,8 +19,8 @@
 
 namespace elastocal {
 
-/// The separator of a text: that of the first line which begins with one, else the first one of
-/// all; a comma where there is none.
+/// The separator of a text (comma, semicolon or tab): the one with which a line begins, in the
+/// first such line; else the first one in the text; else a comma.
 inline char FindFirstSeparator(std::string_view text) {
   constexpr std::string_view kSeparators = ",;\t";
   const std::size_t found = text.find_first_of(kSeparators);
@@ -36,9 +36,9 @@ inline char FindFirstSeparator(const ByteSource& source) {
   return FindFirstSeparator(std::string_view(head.data(), source.Read(0, head)));
 }
 
-/// A text of separated values line by line, as programs of cameras export it: lines have different
-/// lengths, and the meaning of a line depends on where it stands. Where no comma separates, numbers
-/// may have decimal commas, all of them then.
+/// Reads a text of separated values line by line, as programs of cameras export it: lines have
+/// different lengths, and the meaning of a line depends on its place. If the separator is not a
+/// comma, all numbers may have decimal commas.
 class CsvLines {
  public:
   CsvLines(const ByteSource& source, char separator)
@@ -98,7 +98,7 @@ class CsvLines {
          " was expected");
   }
 
-  /// X, Y and Z in three cells: none or all of them, NaN where none. Throws InputError.
+  /// X, Y and Z in three cells; all NaN for three gaps. Throws InputError for one or two gaps.
   std::array<double, 3> Position(std::size_t i) {
     std::array<double, 3> position{};
     int missing = 0;
@@ -124,7 +124,7 @@ class CsvLines {
   std::vector<std::string_view> cells_;
 };
 
-/// Whether frame numbers or times go on as they should: each `step` after the last one, up to
+/// Checks that frame numbers or times increase regularly: each is `step` after the last one, up to
 /// `tolerance`.
 class Steps {
  public:

@@ -9,8 +9,9 @@
 
 namespace elastocal {
 
-/// Numbers of a text whose cells no comma separates: with decimal points, or all of them with
-/// decimal commas, as programs write them in the countries that have these.
+/// Reads the numbers of a text whose separator is not a comma. Either all have decimal points, or
+/// all have decimal commas, as programs write them in some countries. The first such number
+/// decides.
 class DecimalNumbers {
  public:
   /// A finite number as the file writes them.

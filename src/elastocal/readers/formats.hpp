@@ -7,8 +7,8 @@
 
 namespace elastocal {
 
-// One pair a format. Recognises...: whether a file that begins with these bytes (up to 4096) is of
-// the format; all of the file is only looked at by the reader.
+// One pair of functions for each format. Is... says whether a file that begins with these bytes (up
+// to 4096) has the format. Read... reads all of the file.
 
 bool IsC3d(std::string_view head);
 RecordingFile ReadC3d(const ByteSource& source, const ReaderOptions& options);
@@ -22,7 +22,7 @@ RecordingFile ReadMotiveCsv(const ByteSource& source, const ReaderOptions& optio
 bool IsTrc(std::string_view head);
 RecordingFile ReadTrc(const ByteSource& source, const ReaderOptions& options);
 
-/// QTM TSV of the kinds 6D (bodies) and ANALOG or force (nothing for a calibration in them).
+/// QTM TSV of the kinds 6D (bodies), and ANALOG or force, which hold nothing for a calibration.
 bool IsQtmOther(std::string_view head);
 RecordingFile ReadQtmOther(const ByteSource& source, const ReaderOptions& options);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kPoseNumbers = 7;
 
-/// ROS 1 lets names begin with a slash.
+/// Name of a frame without the slash with which names of ROS 1 may begin.
 std::string FrameName(const std::string& name) {
   return name.starts_with('/') ? name.substr(1) : name;
 }

@@ -16,7 +16,7 @@ namespace elastocal {
 /// One transform of a tf message: the pose of `child` in `parent`.
 struct StampedTransform {
   std::string parent, child;
-  std::int64_t stamp_ns = 0;  ///< 0 where nobody set it
+  std::int64_t stamp_ns = 0;  ///< 0 if it was not set
   std::int64_t received_ns = 0;
   std::array<double, 7> pose{};  ///< x y z [m], quaternion x y z w
 };
@@ -25,23 +25,24 @@ struct StampedTransform {
 /// not. A body is a frame with exactly one changing transform between it and the cameras' frame.
 class FrameTransforms {
  public:
-  /// `frame`: of the cameras; empty: the one in which others move. `bodies`: frames that are
-  /// wanted; empty: the moving children of the cameras' frame.
+  /// `frame` is the cameras' frame; empty: the frame in which others move. `bodies` are the frames
+  /// that are wanted; empty: the moving children of the cameras' frame.
   FrameTransforms(const std::string& frame, std::vector<std::string> bodies);
 
   bool empty() const { return motions_.empty(); }
   /// Whether the user asked for a frame.
   bool asked() const { return !frame_.empty(); }
 
-  /// Transforms in the order of the bag. `place` is put before what is wrong with one. Throws
-  /// InputError: a static rotation that is none.
+  /// Adds a transform; call it in the order of the bag. `place` is the beginning of messages about
+  /// it. Throws InputError for a static transform whose quaternion is no rotation.
   void Add(const StampedTransform& transform, bool is_static, const std::string& place);
 
-  /// Poses of the bodies in the cameras' frame, under the last part of their frames' names where
-  /// that tells them apart; the numbers of the messages where nothing static lies between. Empties
-  /// the object. Nothing, and `why_none` says why: a frame that is not there (with the nearest
-  /// name), several frames that others move in. Throws InputError beginning with `source` for
-  /// bodies without a pose in the frame, and stamps in some messages only.
+  /// Poses of the bodies in the cameras' frame. Bodies are named by the last part of their frames'
+  /// names if these parts differ. If no static transform lies between, poses are the numbers of the
+  /// messages. Empties the object. Returns no tracks, with the reason in `why_none`, for a frame
+  /// that does not exist (with the nearest name), or several frames in which others move. Throws
+  /// InputError beginning with `source` for bodies without a pose in the frame, and if only some
+  /// messages have stamps.
   std::vector<BodyTrack> Take(const std::string& source, std::string& why_none);
 
  private:
@@ -55,12 +56,12 @@ class FrameTransforms {
     std::vector<double> poses;
     std::size_t unstamped = 0;
   };
-  /// A frame seen from the one at the upper end of its static transforms.
+  /// Pose of a frame in the frame at the upper end of its static transforms (`root`).
   struct StaticPlace {
     std::string root;
     Transform T_root_frame = Transform::Identity();
-    bool itself = true;          ///< it is the upper end
-    std::string contested = {};  ///< a frame on the way with several parents
+    bool itself = true;          ///< whether the frame is itself the upper end
+    std::string contested = {};  ///< a frame on the way that has several parents; empty: none
   };
 
   StaticPlace PlaceOf(const std::string& frame) const;

@@ -9,16 +9,17 @@
 
 namespace elastocal {
 
-/// The name of a column as a log of ours has it, of one that PlotJuggler and other programs export
-/// from a topic: JOINT_position of `/joint_states/JOINT/position`, likewise `effort`, `torque` and
-/// `velocity`. Other names stay. Empty: a topic's header, which holds nothing of a joint.
+/// The name that a column exported by PlotJuggler and other programs from a topic has in a joint
+/// log: `/joint_states/JOINT/position` becomes JOINT_position; likewise `effort`, `torque` and
+/// `velocity`. Other names stay as they are. Empty for a column of a topic's header, which is about
+/// no joint.
 std::string PlainColumnName(const std::string& name);
 
-/// Columns by name, as JOINT, JOINT_position, JOINT_torque, JOINT_effort and JOINT_velocity, made
-/// into a log: in the order of their names, velocities left out, NaN where a joint has no torque.
-/// All columns are as long as the time, and are used up. Throws InputError, whose message begins
-/// with `source`: a torque without positions, a position twice, positions that are not finite, time
-/// that does not increase.
+/// Makes a joint log of columns by name: JOINT, JOINT_position, JOINT_torque, JOINT_effort and
+/// JOINT_velocity. Joints are in the order of their names, velocities are left out, and torques of
+/// a joint without them are NaN. All columns must be as long as the time; their memory is released.
+/// Throws InputError, whose message begins with `source`: a torque without positions, a position
+/// twice, positions that are not finite, time that does not increase.
 JointLog JoinColumns(const std::string& source, const std::vector<double>& time,
                      std::map<std::string, std::vector<double>>&& columns);
 

@@ -10,24 +10,26 @@
 
 namespace elastocal {
 
-/// Trajectories frame by frame, as readers find them.
+/// Collects trajectories frame by frame, as readers find them.
 class MarkerRows {
  public:
   /// A position in m. One that is not finite, or exactly 0 0 0, is a gap.
   void Add(double x, double y, double z);
   void AddGap();
 
-  /// The rows so far, all of as many markers as there are names. They take little more memory than
-  /// the trajectories: what has been copied is freed.
+  /// The trajectories of the rows so far, each of which must have as many markers as there are
+  /// names. Rows are freed while they are copied, so that little more memory is needed than for the
+  /// result.
   MarkerTrajectories Take(std::string source, std::vector<std::string> names, double rate_hz);
 
  private:
   void Append(double x, double y, double z);
 
-  std::vector<std::vector<double>> blocks_;  ///< of equal size, but for the last
+  std::vector<std::vector<double>> blocks_;  ///< of equal size, except the last
 };
 
-/// Names that are all different: where one comes again, "#2" is added, and so on.
+/// Makes all names different: "#2" is added to the second one of a name, "#3" to the third, and so
+/// on.
 std::vector<std::string> DistinctNames(const std::vector<std::string>& names);
 
 /// Poses of rigid bodies over the frames of a recording.

@@ -29,8 +29,8 @@ struct MotiveBody {
 
 constexpr std::string_view kRotationTypes = "Quaternion, XYZ, XZY, YXZ, YZX, ZXY or ZYX";
 
-/// Of angles [deg] by axis: about the first axis of `order`, then about the second as the first has
-/// turned it, then about the third. Motive 1.6 and later have Euler angles so (relative,
+/// Rotation by Euler angles [deg] (by axis): about the first axis of `order`, then about the turned
+/// second, then about the turned third. This is the convention of Motive 1.6 and later (relative,
 /// right-handed).
 Eigen::Quaterniond FromEulerAngles(const std::string& order, const Eigen::Vector3d& angles_deg) {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
@@ -167,7 +167,7 @@ class MotiveReader {
     }
   }
 
-  /// Takes the rotation that begins in column i, if one does. Throws InputError where it is not of
+  /// Takes the rotation that begins in column i, if one does. Throws InputError if it is not of
   /// the take's rotation type.
   void FindRotation(std::size_t i, MotiveBody& body) {
     if (columns_[i].quantity != "Rotation") return;

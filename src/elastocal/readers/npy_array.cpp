@@ -258,7 +258,8 @@ class NpyReader {
     }
   }
 
-  /// In pieces, so that memory grows with what is there and not with what the head claims.
+  /// Reads the elements in pieces, so that memory grows with the data and not with what the header
+  /// claims.
   void ReadElements(const NpyType& type, std::size_t count, NpyArray& array) const {
     if (type.width == 0) {
       array.texts.resize(std::min<std::size_t>(count, kLongestHeader));

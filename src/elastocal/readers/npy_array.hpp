@@ -16,14 +16,14 @@ struct NpyArray {
   std::vector<double> numbers;
   std::vector<std::string> texts;
   bool is_text = false;
-  std::string unit;  ///< of times (datetime64, timedelta64): "s", "ns"; empty: NumPy states none
-  std::vector<std::string> field_names;  ///< of an array of records
-  std::vector<NpyArray> fields;          ///< likewise; shape: that of the array, and of the field
+  std::string unit;  ///< unit of times (datetime64, timedelta64): "s", "ns"; empty: none is stated
+  std::vector<std::string> field_names;  ///< for an array of records: names of the fields
+  std::vector<NpyArray> fields;          ///< its fields; shape: the array's, then the field's
 
   std::size_t count() const;
 };
 
-/// Bytes one after the other; gives how many there were.
+/// Reads the next bytes into `to`; returns how many there were.
 using ReadBytes = std::function<std::size_t(std::span<char> to)>;
 
 /// Reads an array in NumPy's format (.npy): floats of 4 and 8 bytes, integers, booleans, texts,

@@ -49,7 +49,7 @@ class ZipArchive {
     return name ? name : "";
   }
 
-  /// Of an array of another shape than `wanted` only the shape.
+  /// Reads an array; if it has another shape than `wanted`, only its shape.
   NpyArray Read(std::size_t i, const std::vector<std::size_t>* wanted = nullptr) const {
     const std::string place = source_.name() + ": array " + Quote(Name(i)) + ": ";
     const std::unique_ptr<zip_file_t, decltype(&zip_fclose)> entry(
@@ -81,8 +81,8 @@ class ZipArchive {
   std::unique_ptr<zip_t, Discard> archive_;
 };
 
-/// A log of joints: the time `t`, and either one array a joint, or `names` with matrices; each an
-/// array of its own, or a field of records.
+/// Reads a joint log: the time `t`, and either one array for each joint, or `names` with matrices.
+/// Each is an array of its own or a field of records.
 class NpzReader {
  public:
   NpzReader(const ByteSource& source, std::string time_unit)
@@ -154,7 +154,7 @@ class NpzReader {
     }
   }
 
-  /// The first of these arrays that is there; it is then not listed any more.
+  /// Takes the first of these arrays that exists, and removes it from the lists.
   std::optional<NpyArray> Take(std::initializer_list<const char*> names) {
     for (const char* name : names) {
       if (auto field = fields_.extract(name)) return std::move(field.mapped());
@@ -238,7 +238,7 @@ class NpzReader {
   }
 
   const ByteSource& source_;
-  const std::string time_unit_;  ///< that the user gives; empty: the file states it, or s
+  const std::string time_unit_;  ///< given by the user; empty: that of the file, or s
   ZipArchive archive_;
   std::map<std::string, NpyArray> fields_;      ///< of records, that are not used yet, by name
   std::map<std::string, std::size_t> entries_;  ///< arrays that are not read yet, by name

@@ -91,7 +91,7 @@ class QtmBodyReader {
     for (std::size_t k = 0; k < 9; ++k) {
       rotation(static_cast<Eigen::Index>(k)) = lines_.NumberOrGap(begin + 7 + k);
     }
-    constexpr double kRounding = 0.01;  // of matrices with few decimals
+    constexpr double kRounding = 0.01;  // tolerance for matrices with few decimals
     const bool seen = (rotation.transpose() * rotation).isIdentity(kRounding);
     const bool empty = rotation.isZero(0.0) || rotation.array().isNaN().all();
     if (!seen && !empty) lines_.FailCell(begin + 7, "a rotation matrix in Rot[0] to Rot[8]");
@@ -110,7 +110,7 @@ class QtmBodyReader {
   std::vector<double> positions_, rotations_;
 };
 
-/// The value of a line `KEY<tab>value`; empty where there is none.
+/// The value of a line `KEY<tab>value`; empty if there is none.
 std::string_view ValueOf(std::string_view head, const std::string& key) {
   std::size_t at = head.starts_with(key + "\t") ? 0 : head.find("\n" + key + "\t");
   if (at == std::string_view::npos) return {};

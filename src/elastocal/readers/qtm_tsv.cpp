@@ -20,11 +20,11 @@
 namespace elastocal {
 namespace {
 
-/// More lines above the frames are no header, and would only take long to read.
+/// Largest number of lines above the frames: more are no header, and would only take long to read.
 constexpr int kMostHeaderLines = 10000;
 
-/// What stands above the frames: lines `KEY<tab>value` and a row of column names `[Frame] [Time]
-/// NAME X ...`; either may be absent, but one of them has to name the markers.
+/// The header above the frames: lines `KEY<tab>value` and a row of column names `[Frame] [Time]
+/// NAME X ...`. Either may be absent, but one of them has to name the markers.
 struct QtmHeader {
   std::vector<std::string> names;     ///< of the markers, one or more
   double rate_hz = 0.0;               ///< 0 where the file does not say
@@ -37,7 +37,7 @@ struct QtmHeader {
 struct QtmFrames {
   Eigen::MatrixXd positions;                 ///< frames x 3 N_M, m; NaN where not seen
   std::vector<std::vector<double>> leading;  ///< columns before those of the markers, at most two
-  /// "Frame" or "Time" for each of these; empty where there is one and no row names it.
+  /// "Frame" or "Time" for each of `leading`; empty if there is one and no row names it.
   std::vector<std::string> leading_names;
   int first_line = 1;
 };
@@ -186,8 +186,8 @@ class HeaderReader {
   std::optional<std::size_t> marker_count_;
 };
 
-/// Columns before those of the markers, where no row names them: they are never empty, and the
-/// cells of a marker are all empty or all full.
+/// Number of columns before those of the markers, if no row names them. They are never empty,
+/// whereas the cells of a marker are all empty or all full.
 std::size_t InferLeadingColumns(const std::vector<std::string_view>& cells, std::size_t markers) {
   const auto full = static_cast<std::size_t>(std::count_if(
       cells.begin(), cells.end(), [](std::string_view cell) { return !cell.empty(); }));

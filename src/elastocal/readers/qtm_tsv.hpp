@@ -23,7 +23,8 @@ MarkerTrajectories ParseQtmTsv(std::string_view text, const std::string& source)
 
 /// Writes such a file, as QTM does by default: with header, column names, Frame and Time, and
 /// positions in mm with three decimals (`decimals`, from 0 to 12). A marker that was not seen has
-/// empty cells. What rounds to 0 0 0 is to every reader of the format a marker that was not seen.
+/// empty cells. Every reader of the format takes a position that rounds to 0 0 0 for a marker that
+/// was not seen.
 /// Throws InputError for names that the format cannot hold and when the file cannot be written.
 void WriteQtmTsv(const std::filesystem::path& file, const MarkerTrajectories& trajectories,
                  int decimals = 3);

@@ -9,8 +9,8 @@
 
 namespace elastocal {
 
-/// Fields of a record of a bag, one after the other; all little-endian. Throws InputError naming
-/// the record's offset where it ends too early.
+/// Reads the fields of a record of a bag, one after the other; numbers are little-endian. Throws
+/// InputError naming the record's offset if the record ends too early.
 class RecordFields {
  public:
   RecordFields(const ByteSource& source, std::uint64_t offset, std::span<const char> bytes)

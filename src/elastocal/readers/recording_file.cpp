@@ -29,7 +29,7 @@ constexpr std::array kFormats = {
     Format{"Qualisys TSV (6D, analogue or force)", IsQtmOther, ReadQtmOther},
 };
 
-/// What people take for a recording, by its first bytes, and what is to be done with it.
+/// A kind of file that people take for a recording, by its first bytes, and advice for it.
 struct OtherKind {
   std::string_view begin;
   const char* words;
@@ -70,7 +70,7 @@ const Format* FindFormat(const ByteSource& source) {
   return nullptr;
 }
 
-/// Positions that are in no laboratory are numbers of something else.
+/// Throws InputError for positions that are beyond any laboratory.
 void CheckRoom(const MarkerTrajectories& markers) {
   constexpr double kLargest = 1000.0;  // m
   for (Eigen::Index column = 0; column < markers.positions.cols(); ++column) {

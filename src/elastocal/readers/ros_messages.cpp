@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::int64_t kSecond = 1000000000;
 
-/// The stamp of a header, ns; 0 where nobody set it. `frame` gets the name of its frame.
+/// The stamp of a header, ns; 0 if it was not set. `frame` gets the name of its frame.
 std::int64_t ReadStamp(MessageFields& fields, RosEncoding encoding, std::string* frame = nullptr) {
   if (encoding == RosEncoding::kRos1) fields.U32();  // the sequence number
   const std::int64_t seconds =
@@ -43,7 +43,7 @@ std::string BodyName(std::string topic) {
   return topic.substr(topic.rfind('/') + 1);
 }
 
-/// Where each of `wanted` stands in `names`, which are the same in any order.
+/// Position of each of `wanted` in `names`, which has the same names in any order.
 std::vector<std::size_t> PlacesIn(const std::vector<std::string>& names,
                                   const std::vector<std::string>& wanted) {
   std::vector<std::size_t> places(names.size());
@@ -124,7 +124,7 @@ void RosMessages::AddJointState(Topic& topic, std::span<const char> message,
   const std::vector<double> positions = fields.Numbers();
   fields.Numbers();  // velocities
   std::vector<double> efforts = fields.Numbers();
-  if (positions.empty()) return;  // of a driver that tells velocities only
+  if (positions.empty()) return;  // the driver sends only velocities
   if (positions.size() != names.size() || (!efforts.empty() && efforts.size() != names.size())) {
     throw InputError(place + std::to_string(names.size()) + " names, " +
                      std::to_string(positions.size()) + " positions and " +
@@ -141,7 +141,8 @@ void RosMessages::AddJointState(Topic& topic, std::span<const char> message,
   }
 }
 
-/// The same joints may come in another order: some drivers list them as a hash table has them.
+/// The group with these joints, in whatever order: some drivers list joints in the order of a hash
+/// table.
 RosMessages::JointGroup& RosMessages::GroupOf(Topic& topic, const std::vector<std::string>& names,
                                               const std::string& place) const {
   std::vector<JointGroup>& groups = topic.groups;
@@ -177,7 +178,7 @@ void RosMessages::AddPose(Topic& topic, std::span<const char> message, std::int6
 
 void RosMessages::AddTransforms(const Topic& topic, std::span<const char> message,
                                 std::int64_t received_ns, const std::string& place) {
-  constexpr std::size_t kLeastBytes = 70;  // of one: stamp, two names, seven numbers
+  constexpr std::size_t kLeastBytes = 70;  // of one transform: stamp, two names, seven numbers
   MessageFields fields(message, topic.encoding == RosEncoding::kCdr, place);
   const bool is_static = topic.name.ends_with("tf_static");
   for (std::uint32_t left = fields.Count(kLeastBytes); left > 0; --left) {

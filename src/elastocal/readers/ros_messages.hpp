@@ -12,31 +12,32 @@
 
 namespace elastocal {
 
-/// How the fields of messages stand one after the other.
+/// Encoding of the fields of messages.
 enum class RosEncoding { kCdr, kRos1 };
 
-/// The messages of a bag that a calibration can use: joint states, and poses of bodies, stamped or
-/// as transforms (tf). Any kind of bag adds them in the order of the file. Bodies of tf are taken
-/// where there are no stamped poses, or where the options name a frame.
+/// Collects the messages of a bag that a calibration can use: joint states, and poses of bodies
+/// (stamped poses or transforms of tf). The readers of all kinds of bags add them in the order of
+/// the file. Bodies of tf are taken if there are no stamped poses, or if the options name a frame.
 class RosMessages {
  public:
   /// `source` names the bag in messages.
   RosMessages(std::string source, const ReaderOptions& options);
 
-  /// Another file of the same recording follows, which numbers its topics anew.
+  /// Begins another file of the same recording, which numbers its topics anew.
   void BeginPiece() { places_.clear(); }
 
-  /// A topic under the number `id` of the bag; false where its messages are not needed. Types are
-  /// named as in ROS 1 or ROS 2. What has the name and the type of a topic is that topic.
+  /// Adds a topic with the number `id` in the bag; false if its messages are not needed. Types are
+  /// named as in ROS 1 or ROS 2. A topic with the name and type of an earlier one is the same
+  /// topic.
   bool AddTopic(std::uint64_t id, const std::string& name, const std::string& type,
                 RosEncoding encoding);
 
-  /// A message of such a topic (others are passed over), and when it was received. `place` is put
-  /// before what is wrong with it: "byte 123: ".
+  /// Adds a message of a topic that was added (others are passed over), with the time when it was
+  /// received. `place` is the beginning of messages about it: "byte 123: ".
   void Add(std::uint64_t id, std::span<const char> message, std::int64_t received_ns,
            const std::string& place);
 
-  /// What they hold together. Throws InputError: times that make no sense, names that change.
+  /// The recording in all messages. Throws InputError: implausible times, names that change.
   RecordingFile Take();
 
  private:
@@ -67,7 +68,7 @@ class RosMessages {
                const std::string& place);
   void AddTransforms(const Topic& topic, std::span<const char> message, std::int64_t received_ns,
                      const std::string& place);
-  /// Of a topic that nobody stamped, the times when it was received.
+  /// Replaces the stamps of a topic without stamps by the times when its messages were received.
   void TakeTimes(Topic& topic, std::vector<std::string>& notes) const;
   void TakeJoints(RecordingFile& file);
   void TakePoses(RecordingFile& file);

@@ -21,7 +21,7 @@ constexpr std::string_view kSqliteMagic("SQLite format 3\0", 16);
 constexpr const char* kCutOff =
     "the database is damaged or was cut off (`elastocal convert --salvage` takes what is before)";
 
-/// What the first bytes of a database say.
+/// The header of a database.
 struct DatabaseHead {
   std::uint64_t page = 0;     ///< bytes; the file has whole pages
   bool writes_ahead = false;  ///< to a file -wal beside it
@@ -37,7 +37,7 @@ DatabaseHead ReadHead(const ByteSource& source) {
   return {page == 1 ? 65536u : page, byte(kReadVersion) == 2};
 }
 
-/// A file of a database that writes ahead, without the file that it writes to.
+/// Whether a database writes ahead, but the file to which it writes is missing.
 bool LacksWal(const ByteSource& source, const DatabaseHead& head) {
   std::error_code error;
   return head.writes_ahead && !source.path().empty() &&
@@ -104,7 +104,8 @@ class Database {
       }
       statement_.reset(statement);
     }
-    /// With `damaged`, that the next row cannot be read is no error, but said there.
+    /// Steps to the next row. If it cannot be read, this is an error or, with `damaged`, noted
+    /// there.
     bool Next(bool* damaged = nullptr) {
       const int result = sqlite3_step(statement_.get());
       if (result == SQLITE_ROW) return true;
@@ -134,7 +135,7 @@ class Database {
 
   sqlite3* get() const { return database_.get(); }
 
-  /// SQLite says what is wrong; where a page is, only it knows.
+  /// Throws InputError with SQLite's message. Only SQLite knows the place in the file.
   [[noreturn]] void Fail(const std::string& message) const {
     const char* const reason = database_ ? sqlite3_errmsg(database_.get()) : "no memory";
     throw InputError(source_.name() + ": " + message + ": " + reason);
@@ -170,8 +171,8 @@ class Database {
   std::unique_ptr<sqlite3, decltype(&sqlite3_close)> database_{nullptr, sqlite3_close};
 };
 
-/// Adds what one file of a bag holds; with `salvage`, up to where it is damaged. That, in words, or
-/// nothing.
+/// Adds the messages of one file of a bag; with `salvage`, up to where it is damaged. Returns a
+/// sentence about the damage, or an empty text.
 std::string ReadDatabase(const ByteSource& source, bool salvage, RosMessages& messages) {
   const Database database(source, salvage);
   messages.BeginPiece();

@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-/// Track-row-column files, of Motion Analysis and OpenSim: five lines of header, then frames.
+/// Reads track-row-column files of Motion Analysis and OpenSim: five lines of header, then frames.
 class TrcReader {
  public:
   TrcReader(const ByteSource& source, const ReaderOptions& options)

@@ -9,8 +9,8 @@ namespace {
 
 using Shape = CorrectionShape;
 
-constexpr double kSmoothing = 0.02;  // of the effort: below it the sign of a load is not sharp
-constexpr double kLeastLoad = 0.05;  // N.m or N, where the effort is unknown
+constexpr double kSmoothing = 0.02;  // share of the effort below which a load's sign is smooth
+constexpr double kLeastLoad = 0.05;  // N.m or N, if the effort is unknown
 constexpr double kTypicalAngle = 2e-3, kTypicalPlay = 3e-3, kTypicalSlide = 2e-4;  // rad, rad, m
 constexpr double kTypicalStiffening = 0.075;  // rad at the effort: 3e-3 at a fifth of it
 constexpr double kTypicalRatio = 3e-3;
@@ -74,7 +74,7 @@ double Evaluate(const RobotTree& tree, const Correction& correction, const Eigen
   }
 }
 
-/// Middle of a joint's range, or zero where that has no end.
+/// Middle of a joint's range; zero if the range is unlimited.
 double Middle(const Joint& joint) {
   const double middle = 0.5 * (joint.limits.lower + joint.limits.upper);
   return std::isfinite(middle) ? middle : 0.0;
@@ -85,8 +85,8 @@ struct CouplingSize {
   double typical;
 };
 
-/// Of two joints that turn (tendons, differentials), or one that slides: a spindle with splines is
-/// both.
+/// Unit and prior of a coupling: of two revolute joints (tendons, differentials), or of a revolute
+/// and a prismatic one (a spindle with splines).
 CouplingSize Coupled(bool turns, bool neighbour_turns) {
   if (turns && neighbour_turns) return {ParameterUnit::kRatio, kTypicalRatio};
   if (turns) return {ParameterUnit::kRadianPerMetre, kTypicalTurnBySlide};
@@ -138,7 +138,8 @@ class Catalogue {
     }
   }
 
-  /// Of the body that a joint moves, which has the name of the link on the joint.
+  /// Adds mass and first moments of the body that a joint moves, named after the joint's child
+  /// link.
   void AddBody(int joint) {
     double mass = 0.0;
     for (const Link& link : tree_.links) {

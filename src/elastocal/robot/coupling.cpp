@@ -17,7 +17,7 @@ struct Expression {
   double offset = 0.0;
 };
 
-/// Writes positions in the entries of q that no coupling takes away.
+/// Expresses positions by the entries of q that remain: a coupling removes that of its joint.
 class Substitution {
  public:
   Substitution(const RobotTree& tree, const std::vector<Coupling>& couplings) : tree_(tree) {
@@ -67,8 +67,8 @@ class Substitution {
   }
 
   const RobotTree& tree_;
-  std::map<int, const Coupling*> couplings_;  ///< by the entry of q that they take away
-  std::map<int, Expression> done_;            ///< likewise
+  std::map<int, const Coupling*> couplings_;  ///< by the entry of q that each removes
+  std::map<int, Expression> done_;            ///< finished expressions, by removed entry of q
   std::set<int> open_;                        ///< entries whose expression is being written
 };
 

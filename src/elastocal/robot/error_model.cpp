@@ -75,7 +75,8 @@ void AddJointCompliances(const ErrorModel& model, int k, std::vector<Parameter>&
   }
 }
 
-/// Whether the joints that carry the correction's body (of gravity: any) give way to a load.
+/// Whether a correction of loads has an effect: a joint that carries its body (of gravity: any
+/// active joint) is elastic, the root link stands still and does not bend.
 bool ActsThroughLoads(const ErrorModel& model, const Correction& correction) {
   const Elasticity& elasticity = model.elasticity;
   if (elasticity.stands_on_legs && !model.legs.empty()) return false;
@@ -89,7 +90,7 @@ bool ActsThroughLoads(const ErrorModel& model, const Correction& correction) {
   });
 }
 
-/// Those of a target; of a joint, its index.
+/// Adds the corrections of a target as parameters; for kJoint, those of joint `joint`.
 void AddCorrections(const ErrorModel& model, CorrectionTarget target, int joint,
                     std::vector<Parameter>& parameters) {
   const std::vector<Correction>& corrections = model.elasticity.corrections;

@@ -39,17 +39,19 @@ struct Elasticity {
   std::vector<int> torsion =
       {};  ///< joints that are elastic about (prismatic: along) their axis, eq. 5
   std::vector<int> bending = {};  ///< revolute joints that are elastic across their axis too
-  /// Joints on the root link up to which this link bends. It turns about its origin by what the
-  /// joint carries, and the joint besides: so does a beam between the two, whose ends turn.
+  /// Joints on the root link up to which the root link bends. For such a joint the root link turns
+  /// about its origin by the load of the joint, in addition to the joint's own deflection, like a
+  /// beam between the two whose ends turn.
   std::vector<int> root_bending = {};
-  std::vector<Leg> legs = {};  ///< that the robot stands on alone, be they elastic or not
-  /// Otherwise `legs` only ends in links that are observed, and the root link is held still.
+  std::vector<Leg> legs = {};  ///< each can support the robot alone, elastic or not
+  /// Whether the robot stands on `legs`. If false, the legs only end in links that are observed,
+  /// and the root link is held still.
   bool stands_on_legs = true;
-  bool base = true;          ///< these legs have a lumped compliance from foot to waist, eq. 6 ...
-  bool torque_bias = false;  ///< ... and their torque sensors unknown biases
-  /// What is not elastic either; each is a parameter where its joint moves a marker. Those of loads
-  /// are parameters where a joint that carries the body is elastic, and the root link, which does
-  /// not bend, stands still: on legs it is not known what loads them.
+  bool base = true;          ///< legs have a lumped compliance from foot to waist, eq. 6
+  bool torque_bias = false;  ///< with `base`, the legs' torque sensors have unknown biases
+  /// Corrections (corrections.hpp). One of a joint is a parameter if its joint moves a marker. One
+  /// of loads is a parameter if a joint that carries the body is elastic and the root link stands
+  /// still and does not bend; for a robot on its legs, the loads of the legs are not known.
   std::vector<Correction> corrections = {};
 };
 
@@ -61,13 +63,16 @@ struct ErrorModel {
   std::vector<JointPlacement> placements;  ///< one for each joint of the tree
   std::vector<Marker> markers;
   Transform T_ref_waist = Transform::Identity();  ///< nominal pose of the root link, eq. 2
-  Elasticity elasticity;                          ///< as requested
+  Elasticity elasticity;                          ///< as given to MakeErrorModel
   std::vector<SupportLeg> legs;                   ///< those of `elasticity`, with their joints
   std::vector<int> active_joints;                 ///< joints that have parameters, ascending
-  /// In this order: T0, corrections of the root link and of loads; joints from the waist outwards,
-  /// each with its geometric parameters, then compliance_z, _x, _y, _root_x, _root_y, _root_z, then
-  /// corrections; legs, if `base`, each with six compliances and then torque biases; linkages of
-  /// active joints; corrections of markers; markers.
+  /// The parameters, in this order:
+  /// - T0, then corrections of the root link and of loads;
+  /// - joints from the waist outwards, each with its geometric parameters, then compliance_z, _x,
+  ///   _y, _root_x, _root_y, _root_z, then its corrections;
+  /// - if Elasticity::base, legs, each with six compliances and then torque biases;
+  /// - linkages of active joints;
+  /// - corrections of markers, then the positions of the markers.
   std::vector<Parameter> parameters;
 
   int parameter_count() const { return static_cast<int>(parameters.size()); }
@@ -89,9 +94,9 @@ ErrorModel SelectMarkers(const ErrorModel& model, const std::vector<std::string>
 /// Errors by the names of their parameters.
 std::map<std::string, double> NamedErrors(const ErrorModel& model, const Eigen::VectorXd& errors);
 
-/// For each parameter of the model the error of its name; 0 where there is none. So the errors of
-/// one model of a robot become those of a wider one: ErrorsByName(wide, NamedErrors(model,
-/// errors)).
+/// Vector of errors of the model: for each parameter the entry of `named` with its name, or 0. The
+/// errors of one model of a robot become those of a larger one by ErrorsByName(larger,
+/// NamedErrors(model, errors)).
 Eigen::VectorXd ErrorsByName(const ErrorModel& model, const std::map<std::string, double>& named);
 
 }  // namespace elastocal

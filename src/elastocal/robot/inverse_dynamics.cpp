@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 /// How a body moves, in the world's axes.
 struct BodyMotion {
   Transform T_world_body = Transform::Identity();
-  Vector3d turn, turn_rate, acceleration;  // of its origin
+  Vector3d turn, turn_rate, acceleration;  // the acceleration is that of its origin
 };
 
 /// Motion of the body that a joint moves, from that of the body it is mounted on.

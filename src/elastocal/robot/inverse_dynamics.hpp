@@ -38,8 +38,8 @@ struct LinkWrench {
 };
 
 struct InverseDynamicsResult {
-  /// What the motors supply, by coordinate, N.m or N. The torque of a mimic joint is added to the
-  /// coordinate that drives it, times its multiplier.
+  /// Torque that the motors supply, for each coordinate, N.m or N. The torque of a mimic joint is
+  /// added to the coordinate that drives it, times its multiplier.
   Eigen::VectorXd torques;
   /// The force and moment on the robot, besides gravity and the given wrenches, that its motion
   /// needs; without given wrenches, this is what the floor exerts. In the world's axes, the moment

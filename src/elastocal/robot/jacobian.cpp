@@ -173,7 +173,8 @@ void GeneralizedJacobian::SetRootCompliance(int row, int axis,
   SetRotation(screws_, row, moment[axis] * axes.col(axis), frames_[0].p);
 }
 
-/// Adds to the rotations among a root joint's constants that its loads turn as well.
+/// Adds to the screws of a root joint's rotations the deflection by its load, which turns with
+/// them.
 void GeneralizedJacobian::TurnLoads(int joint, const Geometry::JointConstants& constants,
                                     const MdhFrame& twisted, const JointLoads& loads) {
   const auto turn_about_root = [&](int row, const Vector3d& axis) {
@@ -234,8 +235,8 @@ void GeneralizedJacobian::SetRootCorrections(const Geometry& geometry, const Joi
   }
 }
 
-/// What a correction of loads does to the body that a joint moves: all that it does to the body
-/// before, and the joint's deflection by the load that it adds.
+/// Sets how corrections of loads displace the body that a joint moves: by the displacement of the
+/// body before, plus the joint's deflection under the load that the correction adds.
 void GeneralizedJacobian::AddLoadCorrections(int joint, const Geometry::JointConstants& constants,
                                              const MdhFrame& twisted, const JointLoads& acting,
                                              const JointLoads& loads) {
@@ -274,7 +275,8 @@ void GeneralizedJacobian::SetMarkerCorrections(const Geometry& geometry, const J
   }
 }
 
-/// An error of a linkage moves what is beyond its joints as their own motion does.
+/// Sets the screws of linkages: an error of a linkage displaces all that is beyond its joints as
+/// motions of these joints do.
 void GeneralizedJacobian::SetLinkages(const Geometry& geometry, const Eigen::VectorXd& q) {
   const LinkedPosture posture = PlaceLinkages(model_.tree, geometry.linkage_errors, q);
   for (const LinkageRows& rows : linkage_rows_) {

@@ -16,15 +16,16 @@ namespace elastocal {
 ///
 /// A displacement of any parameter moves the bodies beyond it as a screw, so that every column is a
 /// x p + m: for a rotation, a is its axis and m = o x a with o on the axis; for a translation a is
-/// zero and m its direction. Loads, if given, are constants but for their corrections: the columns
-/// of compliances are derivatives under the corrected loads. A torque bias has no column here,
+/// zero and m its direction. Loads, if given, do not depend on the parameters, except on
+/// corrections of loads; the columns of compliances are derivatives under the corrected loads. A
+/// torque bias has no column here,
 /// because through a joint's torsion it would be the same as an error of theta. The structure is
 /// laid out once; Evaluate allocates nothing.
 class GeneralizedJacobian {
  public:
   enum class LoadsOfRootJoints {
     kConstant,
-    kTurning,  ///< with what the joint carries: TurnedLoads
+    kTurning,  ///< loads of joints on the root link turn with what the joint carries (TurnedLoads)
   };
 
   /// Keeps a reference: the model must outlive it.

@@ -120,7 +120,8 @@ void ApplyLegErrors(const ErrorModel& model, const Eigen::VectorXd& delta, int& 
   }
 }
 
-/// The same of the linkages.
+/// Applies the errors of the linkages, which are in `delta` from index `i` on. Moves `i` behind
+/// them.
 void ApplyLinkageErrors(const ErrorModel& model, const Eigen::VectorXd& delta, int& i,
                         Geometry& geometry) {
   geometry.linkage_errors.resize(model.tree.linkages.size());

@@ -20,13 +20,15 @@ struct JointLoads : Eigen::Matrix3Xd {
   using Eigen::Matrix3Xd::Matrix;
   using Eigen::Matrix3Xd::operator=;
 
-  /// Of joints on the root link: moment of the load about the root link's origin, in its axes, by
-  /// which the joint and what is beyond it turns; 3 x joints of the tree, N.m. Empty: none.
+  /// For joints on the root link: moment of the load about the root link's origin, in its axes, 3 x
+  /// joints of the tree, N.m. A root link that bends turns the joint by it. Empty: none.
   Eigen::Matrix3Xd about_root;
-  /// What the model's corrections multiply in this posture (EvaluateShapes); empty: nothing.
+  /// Values of the functions that the model's corrections multiply in this posture
+  /// (EvaluateShapes); empty: no correction acts.
   Eigen::VectorXd shapes;
-  /// By correction of the model: derivative of the loads by it, for those of loads (statics.hpp).
-  /// The loads themselves are without these corrections. Empty: there are none.
+  /// For each correction of the model that acts on loads, the derivative of the loads by it
+  /// (statics.hpp), 3 x joints of the tree; for other corrections a matrix of no size. The loads
+  /// themselves are without these corrections. Empty: there are none.
   std::vector<Eigen::Matrix3Xd> by_correction;
 };
 
@@ -42,12 +44,13 @@ struct Geometry {
     Eigen::Vector3d p_parent_twisted;
     Eigen::Vector3d z_pre, p_pre;    ///< axis of gamma and b
     Eigen::Vector3d y_beta, p_beta;  ///< axis of beta
-    double theta, r;                 ///< without the joint's position
+    double theta, r;                 ///< constants of eq. 1, without the joint's position
     double centre;                   ///< z of the physical centre in the twisted frame, m
     /// Compliance about x, y, z of the twisted frame, rad/(N.m); of a prismatic joint, along z
     /// only, m/N.
     Eigen::Vector3d compliance;
-    /// Of a joint on the root link: compliance of this link about its origin and axes, rad/(N.m).
+    /// For a joint on the root link: compliance of the root link up to this joint, about the root
+    /// link's origin and axes, rad/(N.m).
     Eigen::Vector3d root_compliance = Eigen::Vector3d::Zero();
   };
   std::vector<JointConstants>
@@ -58,9 +61,9 @@ struct Geometry {
   std::vector<Vector6d> leg_compliance;
   /// For each joint, measured minus true torque, N.m (N). Empty if the model has no legs.
   Eigen::VectorXd torque_bias;
-  /// By linkage of the tree, in the order of its uncertain quantities. Empty: none.
+  /// Errors of each linkage of the tree, in the order of its uncertain quantities. Empty: none.
   std::vector<Eigen::VectorXd> linkage_errors;
-  /// By correction of the model's elasticity. Empty if it has none.
+  /// Value of each correction of the model's elasticity. Empty if it has none.
   Eigen::VectorXd corrections;
   std::vector<Eigen::Vector3d> p_joint_marker;  ///< by marker, in its body's MDH frame
   std::vector<Eigen::Matrix3d> R_joint_link;    ///< by marker: axes of its x, y, z
@@ -77,8 +80,8 @@ inline constexpr int kWaistParameterCount = 6;
 Geometry ApplyErrors(const ErrorModel& model, const Eigen::VectorXd& delta);
 
 /// Replaces only the waist's pose, by `T_ref_waist` displaced by the six errors of eq. 2.
-/// ApplyErrors does the same with the model's own T_ref_waist. Cheap, for a waist that is elsewhere
-/// in each posture.
+/// ApplyErrors does the same with the model's own T_ref_waist. It is cheap enough for a waist that
+/// has another pose in each posture.
 void PlaceWaist(const Transform& T_ref_waist, const Vector6d& t0_errors, Geometry& geometry);
 
 /// Pose of the root link in the reference frame (eq. 2).
@@ -89,15 +92,16 @@ Transform WaistPose(const Geometry& geometry);
 Eigen::Matrix3Xd MarkerPositions(const ErrorModel& model, const Geometry& geometry,
                                  const Eigen::VectorXd& q, const JointLoads& loads = {});
 
-/// Position of a marker in the frame of a link of its own body, m, and the axes of its coordinates
-/// there (columns). Both are the same in all postures: corrections of the marker are left out.
+/// Position of a marker in the frame of a link of its own body, m, and the axes of the marker's
+/// coordinates in that frame (columns). Both are the same in all postures, because corrections of
+/// the marker are left out.
 struct MarkerInLink {
   Eigen::Vector3d position;
   Eigen::Matrix3d axes;
 };
 MarkerInLink PlaceMarker(const ErrorModel& model, const Geometry& geometry, int marker, int link);
 
-/// The loads of the robot with its corrections of loads: what its joints give way to.
+/// The loads that deflect the joints: `loads` plus the corrections of loads in `geometry`.
 JointLoads CorrectedLoads(const Geometry& geometry, const JointLoads& loads);
 
 /// Position of a marker in its body's MDH frame, with its corrections, m.

@@ -68,8 +68,9 @@ Vector6d Weight(const ErrorModel& model, const LegPosture& posture, const Vector
   return wrench;
 }
 
-/// What is carried through a section of the leg, `beyond` of which is its foot, beside the load on
-/// the waist: the leg's own links above it, less those that hang on the leg below it.
+/// Weight that a section of the leg carries in addition to the load on the waist: that of the leg's
+/// own links above the section, less that of another leg that hangs on the leg below the section.
+/// `beyond` marks the bodies on the foot's side.
 Vector6d WeightBesideLoad(const ErrorModel& model, const LegPosture& posture,
                           const Vector3d& gravity_ref, const std::vector<bool>& of_leg,
                           const std::vector<bool>& beyond) {

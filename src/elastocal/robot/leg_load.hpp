@@ -25,6 +25,7 @@ struct LegPosture {
                         ///< is fixed
 };
 
+/// Places leg `leg` of the model in the posture q, with its joints deflected by `loads`.
 LegPosture PlaceLeg(const ErrorModel& model, const Geometry& geometry, const Eigen::VectorXd& q,
                     int leg, const JointLoads& loads = {});
 
@@ -68,10 +69,11 @@ struct LegLoad {
 LegLoad LoadFromTorques(const LegPosture& posture, const Eigen::VectorXd& leg_torques,
                         const LegLoadOptions& options = {});
 
-/// Torques by which the leg's joints hold the leg's own links, which are those beyond its first
-/// joint but not another leg that hangs on it: each joint holds the links between itself and the
-/// waist. A joint above that other leg does not hold it, which LoadFromTorques takes for granted.
-/// `gravity_ref` is in the reference frame, m/s^2.
+/// Torques by which the leg's joints hold the weight of the leg's own links, in the order of the
+/// leg's joints: each joint holds the links between itself and the waist. The leg's own links are
+/// those beyond its first joint, except another leg that hangs on it. The load of LoadFromTorques
+/// contains that other leg, as if all joints carried it; for joints that do not, its weight is
+/// taken off here. `gravity_ref` is in the reference frame, m/s^2.
 Eigen::VectorXd LegWeightTorques(const ErrorModel& model, const LegPosture& posture,
                                  const Eigen::Vector3d& gravity_ref);
 

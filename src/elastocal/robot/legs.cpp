@@ -8,7 +8,7 @@
 namespace elastocal {
 
 std::vector<Leg> FindLegs(const RobotTree& tree, const std::vector<NamedChain>& chains) {
-  constexpr double kSameFloor = 0.02, kLeastLeg = 0.1;  // of the robot's size
+  constexpr double kSameFloor = 0.02, kLeastLeg = 0.1;  // shares of the robot's size
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(tree.coordinate_count());
   const std::vector<Transform> T_root_link = LinkTransforms(tree, zero);
   const double tolerance = kSameFloor * RobotSize(tree);

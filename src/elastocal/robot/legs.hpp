@@ -23,19 +23,20 @@ struct Leg {
       Eigen::Matrix3d::Identity();  ///< attitude of the foot flat on a level floor, z up
 };
 
-/// Finds the legs of a robot: the chains from the root whose tips are below the root and, in the
-/// zero posture with the root link upright, not more than 2 % of the robot's size above the lowest
-/// tip. Where the root link is a frame on the floor, as low as the lowest tip, legs are two chains
-/// or more that begin well above it. A foot at the end of several chains counts once. A robot on a
-/// table (an arm) may have no legs.
+/// Finds the legs of a robot. Heights are those in the zero posture with the root link upright. A
+/// leg is a chain from the root link whose tip is at least 2 % of the robot's size (RobotSize)
+/// below the root link and at most 2 % above the lowest tip of all chains. If the root link is
+/// itself within 2 % of the lowest tip (a frame on the floor), legs are chains whose first joint is
+/// more than 10 % of the size above their tip, and there must be two or more of them. If several
+/// chains end in one foot, the first is taken. A robot may have no legs (an arm on a table).
 std::vector<Leg> FindLegs(const RobotTree& tree, const std::vector<NamedChain>& chains);
 
-/// How high a leg begins in the zero posture, m above the root link: its first joint, or the root
-/// link itself where that is higher (0). `joints`: from the root link to the foot.
+/// Height of a leg's first joint above the root link in the zero posture, m; 0 if it is below the
+/// root link. `joints` lead from the root link to the foot.
 double LegTop(const RobotTree& tree, const std::vector<int>& joints);
 
-/// Height of the root link, or of the first joint of a leg where that is higher, above the soles at
-/// the zero posture, m; 0 without legs.
+/// Height of the root link, or of the first joint of the first leg if that is higher, above the
+/// foot of the first leg in the zero posture, m; 0 without legs.
 double StandingHeight(const RobotTree& tree, const std::vector<Leg>& legs);
 
 /// Whether a joint belongs to a leg.

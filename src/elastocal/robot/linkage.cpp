@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 constexpr int kMostSteps = 50;        // of Newton's method
 constexpr double kClosed = 1e-13;     // m: how well a loop is closed
 constexpr double kLongestStep = 0.2;  // rad, of Newton's method
-constexpr double kMotorStep = 0.05;   // rad or 10 m, of a motor on the way to its position
+constexpr double kMotorStep = 0.05;   // rad or m: step of a motor on the way to its position
 constexpr double kLeastLever = 1e-4;  // m/rad: by which the rods move the joints
 
 std::string Quoted(const std::string& name) { return "'" + name + "'"; }

@@ -32,21 +32,22 @@ inline MdhFrame Deflected(const Geometry::JointConstants& constants, bool revolu
   return deflected;
 }
 
-/// The root link as a joint on it sees it: turned about its origin by the joint's load.
+/// The root link's frame for a joint on it, if the root link bends up to this joint: turned about
+/// its origin by the compliance times `moment`.
 inline MdhFrame BentRoot(const Geometry::JointConstants& constants, const Eigen::Vector3d& moment,
                          const MdhFrame& root) {
   return {root.R * RotationFromVector(constants.root_compliance.cwiseProduct(moment)), root.p};
 }
 
-/// Loads that were found with the robot's constants `before`, where they are `after`: those of
-/// joints on the root link stay as they are in the axes of what the joint carries. That stands
-/// where it did in the room when the root link's frame is displaced and nothing else (gauge.hpp),
-/// and with it the load; fixed in the root link's axes, the loads would seem to tell where that
-/// frame is.
+/// Expresses loads that were computed with the constants `before` for a robot with the constants
+/// `after`. The loads of joints on the root link stay the same in the axes of what the joint
+/// carries. If only the root link's frame is displaced (gauge.hpp), what the joint carries stays
+/// where it was in the room, and so does its load. If the loads were kept in the root link's axes
+/// instead, they would seem to tell where that frame is.
 JointLoads TurnedLoads(const ErrorModel& model, const Geometry& before, const Geometry& after,
                        const JointLoads& loads);
 
-/// What corrections add to the position of a joint, rad or m.
+/// Sum of the corrections that displace a joint's position, rad or m.
 inline double PositionCorrection(const ErrorModel& model, const Geometry& geometry,
                                  const JointLoads& loads, int joint) {
   double sum = 0.0;

@@ -25,16 +25,16 @@ struct Box {
 struct ChainSetup {
   std::string name;  ///< of the chain
   int from_link = 0, tip_link = 0;
-  std::vector<int> coordinates;  ///< that move the chain, from the root outwards
+  std::vector<int> coordinates;  ///< coordinates that move the chain, from the root outwards
   std::string mirror;        ///< the chain on the other side that gets mirrored postures, or empty
   std::vector<int> support;  ///< feet that stand on the floor (links)
-  std::optional<Box> box;    ///< of the tip link's origin, eq. 10
-  double largest_turn = M_PI;        ///< of the tip from its attitude in the posture of rest, rad
+  std::optional<Box> box;    ///< where the tip link's origin must be, eq. 10
+  double largest_turn = M_PI;        ///< largest rotation of the tip from the posture of rest, rad
   std::vector<SpherePair> contacts;  ///< spheres that can touch, eq. 11
-  /// The tip stays so far from singular postures: the least singular value of its Jacobian is at
-  /// least this share of what it is in the posture of rest; 0: anywhere.
+  /// How far the tip stays from singular postures: the least singular value of its Jacobian is at
+  /// least this share of the value in the posture of rest. 0: no limit.
   double dexterity_share = 0.0;
-  /// Height of the floor, which the chain's own spheres stay above, in the root link's frame, m.
+  /// Height of the floor in the root link's frame, m. The chain's own spheres stay above it.
   std::optional<double> floor_z;
 };
 
@@ -43,7 +43,7 @@ struct MotionSetup {
   Eigen::VectorXd rest;          ///< posture of rest, by coordinate of q; within the limits
   Eigen::VectorXd lower, upper;  ///< limits with a margin, by coordinate, rad or m
   double effort_share = 1.0;     ///< share of the URDF's largest torques that may be used, eq. 9
-  double motion_effort_share = 0.9;  ///< the same of planned motions, whose joints accelerate
+  double motion_effort_share = 0.9;  ///< the same for planned motions, whose joints accelerate
   double sphere_margin = 0.0;        ///< least distance between spheres, m
   std::vector<CollisionSphere> spheres;
   std::vector<ChainSetup> chains;        ///< in the order in which they are calibrated

@@ -9,7 +9,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// What an entry of q that moves the joint is multiplied with.
+/// Factor by which an entry of q moves the joint.
 double Multiplier(const Joint& joint, int coordinate) {
   double sum = 0.0;
   for (const Drive& drive : DrivesOf(joint)) {

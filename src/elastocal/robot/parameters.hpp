@@ -11,8 +11,9 @@ namespace elastocal {
 /// placement.hpp). Elastic kinds (eq. 5 to 7) are compliances (inverse stiffnesses) of joints about
 /// their axes (`kTorsion`) and across them (`kBending`), compliances of a leg between its foot and
 /// the waist by a force (`kLegForce`) and by a moment (`kLegMoment`), and the bias of a joint's
-/// torque sensor. `kCorrection`: what neither describes (corrections.hpp). `kRod` and `kMotorZero`
-/// are those of linkages (linkage.hpp): lengths, and the zeros of motors.
+/// torque sensor (`kTorqueBias`). `kCorrection` is an error that neither geometry nor elasticity
+/// describes (corrections.hpp). `kRod` (lengths) and `kMotorZero` (zeros of motors) are errors of
+/// linkages (linkage.hpp).
 enum class ParameterKind {
   kTheta,
   kR,
@@ -56,21 +57,21 @@ inline constexpr int kRootAxis = 3;
 struct Parameter {
   /// JOINT.theta|r|d|b|alpha|beta|gamma, waist.T0.gamma|b|alpha|d|theta|r or
   /// marker.MARKER.x|y|z (in the frame of the link that carries the marker); elastic ones
-  /// JOINT.compliance_x|y|z (axes of its twisted frame, see mdh_frames.hpp: z is torsion) and, of
-  /// what a joint on the root link hangs on, JOINT.compliance_root_x|y|z (axes of the root link),
+  /// JOINT.compliance_x|y|z (axes of its twisted frame, see mdh_frames.hpp: z is torsion), for the
+  /// root link up to a joint on it JOINT.compliance_root_x|y|z (axes of the root link),
   /// LEG.compliance_x|y|z|rx|ry|rz (axes of its foot) and JOINT.torque_bias; of a linkage
   /// MOTOR.length|zero|radius|anchor_x ... centre_z (RodQuantity).
   std::string name;
   ParameterKind kind;
   ParameterUnit unit;
-  int joint = -1;        ///< of the robot tree, for joint parameters
-  int marker = -1;       ///< of the error model, for marker positions
-  int leg = -1;          ///< of the error model, for compliances of a leg and torque biases
-  int axis = -1;         ///< of a compliance: 0, 1, 2 for x, y, z (rx, ry, rz); kRootAxis + 0, 1, 2
-                         ///< of the root link
-  int correction = -1;   ///< of the error model's elasticity, for corrections
-  double typical = 0.0;  ///< of a correction or linkage: standard deviation of its prior
-  int linkage = -1;      ///< of the robot tree, for parameters of linkages; in their order
+  int joint = -1;        ///< index into the robot tree's joints, for joint parameters
+  int marker = -1;       ///< index into the error model's markers, for marker positions
+  int leg = -1;          ///< index into the error model's legs, for their compliances and biases
+  int axis = -1;         ///< axis of a compliance: 0, 1, 2 for x, y, z (rx, ry, rz); kRootAxis + 0,
+                         ///< 1, 2 for one of the root link
+  int correction = -1;   ///< index into Elasticity::corrections, for corrections
+  double typical = 0.0;  ///< for corrections and linkages: standard deviation of the prior
+  int linkage = -1;      ///< index into the robot tree's linkages, for their parameters
 };
 
 /// Name of a kind in parameter names and settings: theta, r, d, b, alpha, beta, gamma, T0, marker,

@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-/// What joints move weighs more than anything of that size; empty where it does not.
+/// A sentence if the parts that joints move weigh more than anything of that size; else empty.
 std::string WarnOfHeavyParts(double moved_kg, double width_m) {
   constexpr double kMost = 300.0;  // kg/m^3 of a cube as wide as the robot: they weigh 2 to 64
   if (width_m <= 0.0 || moved_kg <= kMost * width_m * width_m * width_m) return "";
@@ -47,7 +47,7 @@ Eigen::Matrix3d PhysicalInertia(const Eigen::Matrix3d& inertia) {
 }
 
 std::vector<std::string> InertiaWarnings(const RobotTree& tree) {
-  constexpr double kNotable = 0.01;  // kg: of frames without a body, anything is written
+  constexpr double kNotable = 0.01;  // kg: lighter links are frames with arbitrary inertias
   const double width = RobotSize(tree);
   std::vector<std::string> warnings;
   std::vector<double> mass(Size(tree.body_count()), 0.0);

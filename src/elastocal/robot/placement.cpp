@@ -22,7 +22,7 @@ struct Normal {
 constexpr double kSameLength = 1e-9;  // m; axes closer than this meet
 // m; small errors turn the perpendicular between parallel axes that are closer than this by much.
 constexpr double kCoaxial = 0.02;
-// rad; beta is singular between axes at right angles, and of no use far from parallel ones.
+// rad; beta is singular between axes at right angles, and is needed only near parallel ones.
 constexpr double kMostInclined = M_PI / 4.0;
 
 Vector3d ClosestPoint(const Axis& axis, const Vector3d& p) {
@@ -68,7 +68,7 @@ bool NeedsBeta(const Axis& a, const Axis& b, const PlacementOptions& options) {
   return (CommonNormal(a, b).end - b.point).norm() > options.longest_lever_m * sine;
 }
 
-/// Whether the joint of a body slides. Only the direction of its axis means something.
+/// Whether the joint of a body is prismatic. Then only the direction of its axis has a meaning.
 bool Slides(const RobotTree& tree, int body) {
   return body > 0 && tree.joints[body - 1].type == JointType::kPrismatic;
 }
@@ -83,7 +83,7 @@ Transform Frame(const Vector3d& origin, const Vector3d& z, const Vector3d& x) {
   return T;
 }
 
-/// What is needed of the tree to place its joints, at zero joint positions.
+/// The tree at zero joint positions, with what is needed to place its joints.
 struct ZeroPose {
   std::vector<Transform> T_root_body;
   std::vector<Axis> axes;       // by joint

@@ -13,10 +13,10 @@ struct PlacementOptions {
   /// errors of a robot: the common normal of nearly parallel axes is far away, and small errors
   /// move it by much.
   double parallel_tolerance_rad = 10.0 * M_PI / 180.0;
-  /// So do axes that are inclined to each other by less than 45 degrees where an error of their
-  /// directions moves their common normal along them by more than this, m/rad: its distance from
-  /// the second joint over the sine of the angle. The shoulders of some humanoids are inclined by
-  /// 10 to 20 degrees; their normals are a metre away.
+  /// Axes that are inclined to each other by less than 45 degrees also need `beta`, if an error of
+  /// their directions moves their common normal along them by more than this, m/rad. (This lever is
+  /// the distance of the normal from the second joint over the sine of the angle.) The shoulders of
+  /// some humanoids are inclined by 10 to 20 degrees; their normals are a metre away.
   double longest_lever_m = 1.0;
 };
 
@@ -32,10 +32,10 @@ struct PlacementOptions {
 /// nominal kinematics equal the URDF's.
 ///
 /// Eq. 1 alone has no displacement along y, so it cannot place the first joint after the waist or
-/// after a branch. It cannot place a joint either whose axis coincides with the one before it
-/// (within 2 cm): d covers only one of the two directions in which the axes can part. Nor can it
-/// place a joint that is parallel to a sliding one before it, as arm and head of a robot with a
-/// lift are: where the sliding axis lies means nothing, so that a turn about it, which serves
+/// after a branch. It cannot place a joint whose axis coincides with the one before it (within 2
+/// cm), because d covers only one of the two directions in which the axes can part. It cannot place
+/// a joint whose axis is parallel to that of a prismatic joint before it (arm and head of a robot
+/// with a lift): the place of a sliding axis has no meaning, so that the turn about it, which works
 /// between parallel axes of rotation, would turn all that slides for a shift of one axis. Such a
 /// joint is `general`: T_parent_pre is a constant frame on its axis with z at right angles to it,
 /// nominal alpha is 90 degrees and the other constants are zero. The six displacements are then

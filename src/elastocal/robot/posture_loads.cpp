@@ -59,7 +59,8 @@ void LoadWaist(const ErrorModel& model, const LegPosture& posture, const Measure
   loads.waist_by_bias = -load.wrench_by_torque;
 }
 
-/// A measured torque has its joint's load whatever the masses.
+/// Sets the derivatives of the loads by corrections. A load from a measured torque does not depend
+/// on the masses.
 void AddByCorrections(const ErrorModel& model, const Geometry& geometry, const Eigen::VectorXd& q,
                       const MeasuredLoads& measured, const Eigen::Vector3d& gravity_ref,
                       JointLoads& loads) {

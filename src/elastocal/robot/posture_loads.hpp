@@ -19,15 +19,15 @@ enum class LoadSource {
 
 struct LoadOptions {
   LoadSource source = LoadSource::kTorques;
-  /// Where the leg's Jacobian is worse conditioned than this (a straight knee), torques say nothing
-  /// about the load: statics replace them in that posture.
+  /// Largest condition number of the leg's Jacobian. Above it (a straight knee), torques do not
+  /// tell the load, and statics replace them in that posture.
   double largest_condition = 100.0;
 };
 
 /// Loads that the robot's sensors measured in one posture.
 struct MeasuredLoads {
   Eigen::VectorXd torques;  ///< by joint of the tree, N.m or N; NaN without sensor; empty: none
-  int wrench_link = -1;     ///< of a force-torque sensor in the support leg; -1: none
+  int wrench_link = -1;     ///< link of a force-torque sensor in the support leg; -1: none
   Vector6d wrench = Vector6d::Zero();  ///< see LoadFromWrench
 };
 
@@ -56,8 +56,8 @@ PostureLoads LoadPosture(const ErrorModel& model, const Geometry& geometry,
                          const Eigen::VectorXd& q, int leg, const MeasuredLoads& measured,
                          const Eigen::Vector3d& gravity_ref, const LoadOptions& options);
 
-/// Sets what the corrections of the model multiply in a posture (EvaluateShapes). The moment of the
-/// weight on the root link, of `history`, is found here.
+/// Sets JointLoads::shapes: the functions that the corrections of the model multiply in a posture
+/// (EvaluateShapes). PostureHistory::root_moment of `history` is computed here.
 void AddShapes(const ErrorModel& model, const Geometry& geometry, const Eigen::VectorXd& q,
                const Eigen::Vector3d& gravity_ref, PostureHistory history, JointLoads& loads);
 

@@ -42,7 +42,7 @@ struct Joint {
   int coordinate = 0;
   double multiplier = 1.0, offset = 0.0;
   bool mimic = false;            ///< its position is that of others: it has no entry of its own
-  std::vector<Drive> more = {};  ///< of a joint coupled to several others: what is added
+  std::vector<Drive> more = {};  ///< further entries of q that move a coupled joint, added up
 };
 
 /// A link of the URDF. Links joined by fixed joints form one body.
@@ -66,7 +66,7 @@ struct RobotTree {
   std::vector<Joint> joints;
   std::vector<int> coordinate_joint;  ///< for each entry of q, its joint
   std::vector<Linkage> linkages;      ///< joints that motors move by rods: see AddLinkage
-  /// What the description leaves open or says oddly, and how it was taken.
+  /// Sentences about what the description leaves open or says oddly, and how it was read.
   std::vector<std::string> warnings;
 
   int body_count() const { return static_cast<int>(joints.size()) + 1; }
@@ -78,14 +78,14 @@ struct RobotTree {
 int FindLink(const RobotTree& tree, const std::string& name);
 int FindJoint(const RobotTree& tree, const std::string& name);
 
-/// All that moves a joint.
+/// All entries of q that move a joint, with their factors.
 std::vector<Drive> DrivesOf(const Joint& joint);
 
 /// Whether an entry of q, or one of several, moves the joint.
 bool IsMovedBy(const Joint& joint, int coordinate);
 bool IsMovedBy(const Joint& joint, const std::vector<int>& coordinates);
 
-/// Velocity or acceleration of a joint for that of q.
+/// Velocity (acceleration) of a joint for the velocity (acceleration) `q_rate` of q.
 double JointRate(const Joint& joint, const Eigen::VectorXd& q_rate);
 
 /// Adds a joint's torque [N.m or N] to those of the entries of q that move it.
@@ -112,15 +112,16 @@ std::vector<int> JointsToBody(const RobotTree& tree, int body);
 /// the robot are much further apart.
 double RobotSize(const RobotTree& tree);
 
-/// Where a joint is moved for a measurement, rad or m: within its limits, and half a turn or 0.5 m
-/// to either side of zero where it has none. Limits further apart than one turn (motors that count
-/// turns) hold no posture twice: the turn that is left has its middle as near `around` as they
-/// allow. A share `margin` of the range is left free at either end.
+/// Range of a joint's positions in postures, rad or m. It is given by the joint's limits, or half a
+/// turn (0.5 m) to either side of zero where it has none. If the limits are further apart than one
+/// turn (motors that count turns), the range is one turn whose middle is as near to `around` as the
+/// limits allow, so that no posture occurs twice. A share `margin` of the range is left free at
+/// either end.
 std::pair<double, double> PostureRange(const Joint& joint, double margin = 0.0,
                                        double around = 0.0);
 
-/// A posture drawn uniformly within PostureRange in which the linkages close. Size
-/// `coordinate_count()`.
+/// A posture drawn uniformly within PostureRange, of size `coordinate_count()`. It is drawn again,
+/// up to 1000 times, until the linkages close.
 Eigen::VectorXd RandomPosture(const RobotTree& tree, Random& random);
 
 }  // namespace elastocal

@@ -39,9 +39,9 @@ RodLinks PlaceLinks(const RobotTree& tree, const Linkage& linkage, const Rod& ro
   const Link& from = tree.links[rod.from_link];
   const Link& to = tree.links[rod.to_link];
   RodLinks links;
-  Transform T = from.T_body_link.inverse();  // from link -> body in hand
+  Transform T = from.T_body_link.inverse();  // maps the body reached so far to the from link
   for (int k : JointsToBody(tree, to.body)) {
-    if (k < from.body) continue;  // carries `from`, or moves it
+    if (k < from.body) continue;  // the joint is before the from link
     const Joint& joint = tree.joints[k];
     const auto found = std::find(linkage.joints.begin(), linkage.joints.end(), k);
     links.joints.push_back(static_cast<int>(found - linkage.joints.begin()));

@@ -10,8 +10,8 @@
 
 namespace elastocal {
 
-/// One of the feet that a robot stands on: where kinematics sees it from the root link, and where
-/// it stands on the floor.
+/// One of the feet that a robot stands on: its pose by kinematics from the root link, and its pose
+/// on the floor.
 struct StandingFoot {
   Transform T_root_foot = Transform::Identity();
   Transform T_floor_foot = Transform::Identity();
@@ -21,18 +21,18 @@ struct StandingFoot {
 /// The root link of a robot that stands on several feet, and how it moves.
 struct RootOnFeet {
   Transform T_floor_root = Transform::Identity();
-  /// By foot: rotation [rad] and displacement of the root's origin [m], in the axes of the floor,
-  /// by a screw [a; m] of the foot in the root's frame (an error of that leg). 6 x 6.
+  /// For each foot, 6 x 6: rotation [rad] and displacement of the root's origin [m], in the axes of
+  /// the floor, by a screw [a; m] of the foot in the root's frame (an error of that leg).
   std::vector<Matrix6d> by_foot;
 };
 
-/// Places the root link. Each leg by itself would put it elsewhere, because its errors are its own;
-/// feet that stand firmly force the legs together, and each gives way by its share: the root is the
-/// mean of what the legs say, weighted by their shares (rotations by their rotation vectors from
+/// Places the root link of a robot on several feet. Because of their errors, the legs disagree
+/// about the root's pose, and feet that stand firmly force them together. The pose is the mean of
+/// those by each leg, weighted by the shares of the feet (rotations by their rotation vectors from
 /// the first one). Throws std::invalid_argument without feet.
 RootOnFeet PlaceRootOnFeet(const std::vector<StandingFoot>& feet);
 
-/// What is left between the feet: the pose of the root by each foot against that by the first, as
+/// Closure of the legs: the pose of the root by each further foot relative to that by the first, as
 /// displacement of its origin [m] and rotation vector [rad]; 6 x (feet - 1).
 Eigen::Matrix<double, 6, Eigen::Dynamic> FootClosure(const std::vector<StandingFoot>& feet);
 

@@ -33,7 +33,7 @@ double AngleBetween(const AxisLine& a, const AxisLine& b) {
   return std::atan2(a.direction.cross(b.direction).norm(), std::abs(a.direction.dot(b.direction)));
 }
 
-/// Diameter of the points where neighbouring axes come closest.
+/// Largest distance between the points where neighbouring axes come closest, m.
 double WristSpread(const AxisLine& a, const AxisLine& b, const AxisLine& c) {
   const Vector3d points[] = {ClosestPoint(a, b), ClosestPoint(b, a), ClosestPoint(b, c),
                              ClosestPoint(c, b)};

@@ -8,8 +8,8 @@
 
 namespace elastocal {
 
-/// Consecutive revolute joints whose axes have a relation on which inverse kinematics in closed
-/// form relies.
+/// Consecutive revolute joints whose axes are parallel or meet in one point. Inverse kinematics in
+/// closed form relies on such relations.
 struct SpecialGeometry {
   enum class Kind { kSphericalWrist, kParallelAxes };
   Kind kind;
@@ -24,8 +24,7 @@ std::vector<SpecialGeometry> FindSpecialGeometry(const RobotTree& tree);
 /// where numbers were rounded; no robot is meant to be so.
 std::vector<SpecialGeometry> FindNearlySpecialGeometry(const RobotTree& tree);
 
-/// Distance between the axes of two joints at zero posture, m: of parallel ones, how far they are
-/// from being one.
+/// Distance between the parallel axes of two joints in the zero posture, m; 0 if they coincide.
 double AxisDistance(const RobotTree& tree, int first, int second);
 
 /// Deviation of a group of joints in `tree` (the same joints, with other origins) from the

@@ -10,8 +10,8 @@
 
 namespace elastocal {
 
-/// What of a foot touches the floor: a rectangle in the plane z = 0 of its link, or a ball about
-/// the origin of its link, which touches in one point whatever its attitude.
+/// The part of a foot that touches the floor: a rectangle in the plane z = 0 of its link, or a ball
+/// about the origin of its link, which touches the floor in one point.
 struct Sole {
   int link = 0;
   Eigen::Vector2d lower = Eigen::Vector2d::Zero();  ///< corner of least x and y, m; 0 of a ball
@@ -19,16 +19,17 @@ struct Sole {
   std::optional<double> ball_radius = {};  ///< m, 0 or more; none: a flat sole
 
   Eigen::Vector2d centre() const { return 0.5 * (lower + upper); }
-  /// Of the link's origin over the floor on which it stands, m.
+  /// Height of the link's origin over the floor on which the foot stands, m.
   double height() const { return ball_radius.value_or(0.0); }
 };
 
-/// Heights of a sole's lowest points over the plane z = 0 of the world, m: of the corners of a flat
-/// one, of the lowest point of a ball.
+/// Heights over the plane z = 0 of the world, m: of the four corners of a flat sole, or of the
+/// lowest point of a ball.
 std::vector<double> HeightsOverFloor(const Sole& sole, const Transform& T_world_sole);
 
-/// Axes of the floor under a robot on balls, by columns, from three or more of their centres in its
-/// root link's frame: z is the normal of their plane that points up there, and x ahead.
+/// Axes of the floor (columns) in the root link's frame of a robot that stands on three or more
+/// balls with these centres: z is the normal of their plane that points upwards, and x points
+/// ahead, as nearly as z allows.
 Eigen::Matrix3d FloorAxes(const std::vector<Eigen::Vector3d>& centres);
 
 /// A convex polygon on the floor, corners counter-clockwise, 2 x corners, m.

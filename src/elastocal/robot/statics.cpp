@@ -127,7 +127,7 @@ std::vector<int> CorrectionsOfLoads(const ErrorModel& model) {
   return corrections;
 }
 
-/// What one unit of a correction adds to the weight of its body.
+/// Mass and first moment that one unit of a correction adds to its body.
 CarriedLoad AddedLoad(const RobotTree& tree, const Correction& correction,
                       const std::vector<Transform>& T_ref_link) {
   if (correction.shape == CorrectionShape::kFirstMoment) {

@@ -28,8 +28,9 @@ struct CarriedLoad {
 std::vector<CarriedLoad> CarriedLoads(const RobotTree& tree,
                                       const std::vector<Transform>& T_ref_link, int fixed_link);
 
-/// Torque (force for a prismatic joint) of gravity on each joint, N.m or N, if all that it carries
-/// beyond itself were held out sideways as it is in the zero posture.
+/// Largest torque (force) of gravity on each joint, N.m or N: the weight of all that it carries,
+/// times the distance of the centre of mass from the joint's origin in the zero posture, as if it
+/// were held out horizontally. For a prismatic joint, the weight.
 Eigen::VectorXd LargestGravityTorques(const RobotTree& tree);
 
 /// Torques (forces for prismatic joints) by coordinate of q that the motors must supply to hold the
@@ -39,7 +40,7 @@ Eigen::VectorXd LargestGravityTorques(const RobotTree& tree);
 Eigen::VectorXd StaticTorques(const RobotTree& tree, const Eigen::VectorXd& q,
                               const Eigen::Vector3d& gravity_waist, int fixed_link);
 
-/// The same while the root link is held still.
+/// StaticTorques while the root link is held still.
 Eigen::VectorXd GravityTorques(const RobotTree& tree, const Eigen::VectorXd& q,
                                const Eigen::Vector3d& gravity_waist = kGravity);
 
@@ -57,8 +58,8 @@ JointLoads GravityLoads(const ErrorModel& model, const Geometry& geometry, const
 
 /// Derivatives of GravityLoads, with the root link (0) standing still, by each correction of loads
 /// that is a parameter of the model: masses and first moments of bodies, and the tilt of gravity to
-/// first order. By correction of the model's elasticity; of others empty, and all empty where there
-/// are none.
+/// first order. One entry for each correction of the model's elasticity, of no size for others; no
+/// entries at all if there are none.
 std::vector<Eigen::Matrix3Xd> LoadsByCorrections(const ErrorModel& model, const Geometry& geometry,
                                                  const Eigen::VectorXd& q,
                                                  const Eigen::Vector3d& gravity_ref);

@@ -9,7 +9,7 @@ namespace elastocal {
 RobotTree Subtree(const RobotTree& tree, int link) {
   RobotTree subtree;
   subtree.name = tree.name;
-  std::map<int, int> body_of, link_of, coordinate_of;  // of the tree -> of the subtree
+  std::map<int, int> body_of, link_of, coordinate_of;  // index in the tree -> in the subtree
   body_of[tree.links[link].body] = 0;
   std::vector<int> joints;
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {

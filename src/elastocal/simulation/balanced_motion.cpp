@@ -11,7 +11,8 @@
 namespace elastocal {
 namespace {
 
-/// The motion, one look later: the robot is looked at from the end of the first sample on.
+/// The motion sampled at `rate_hz` and delayed by one sample, because StandThrough looks at the
+/// robot from the end of the first sample on.
 JointMotion Sampled(const Motion& motion, const std::vector<int>& support, Eigen::Index samples,
                     double rate_hz) {
   JointMotion sampled;
@@ -33,7 +34,7 @@ TrueMotion PlayBalanced(const TrueRobot& robot, const RobotTree& described,
   std::vector<Sole> soles;
   for (const int foot : support) soles.push_back(SoleOf(foot, options));
   MotionRecorder recorder(robot, motion, T_camera_world);
-  // Rounding may cost a look.
+  // There is one sample to spare, because StandThrough may drop the last one by rounding.
   const JointMotion sampled =
       Sampled(motion, support, recorder.frames() + 2, recorder.motion.rate_hz);
   Stabiliser stabiliser(described, soles);

@@ -30,8 +30,8 @@ std::size_t RunEnd(const std::vector<bool>& flags, std::size_t i) {
   return end;
 }
 
-/// By frame, whether the robot is commanded to stay where it is, and for longer than at the end of
-/// a sine's swing.
+/// For each frame, whether the robot is commanded to stay where it is, for longer than at the
+/// turning points of a sine.
 std::vector<bool> RestingFrames(const Motion& commanded, const TrueMotion& played) {
   constexpr double kShortestRest = 0.3;  // s
   std::vector<bool> resting;
@@ -52,7 +52,8 @@ std::vector<bool> RestingFrames(const Motion& commanded, const TrueMotion& playe
   return resting;
 }
 
-/// Places by frame: where the base stands, and smoothly on to the next place between two rests.
+/// For each frame, the place of the root link: constant in each rest, and on a smooth way to the
+/// next place between two rests.
 std::vector<Place> DrivenPlaces(const std::vector<bool>& resting, Random& random) {
   std::vector<Place> places;
   Place from = DrawPlace(random);

@@ -7,10 +7,11 @@
 
 namespace elastocal {
 
-/// Lets the base of a robot drive on the level floor while it moves from one rest to the next: what
-/// happened in `played`, on a root link that was held at T_camera_world, happens at places within
-/// `kDrivingSpan` of there, in directions within `kDrivingTurn`. The base stands still wherever
-/// `commanded` does, and starts and stops smoothly; it is so slow that the arm does not feel it.
+/// Lets the root link of a robot drive on the level floor while the robot moves from one rest to
+/// the next. `played` is a motion whose root link was held at T_camera_world; its markers and root
+/// poses are moved to places within `kDrivingSpan` of there, with headings within `kDrivingTurn`.
+/// The root link stands still wherever `commanded` does, and starts and stops smoothly. It is taken
+/// to drive so slowly that the arm's dynamics do not change.
 void DriveBase(const Motion& commanded, const Transform& T_camera_world, std::uint64_t seed,
                TrueMotion& played);
 

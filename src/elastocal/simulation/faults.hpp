@@ -20,7 +20,7 @@ void LoseMarkers(const Faults& faults, const std::vector<PlannedTrial>& trials, 
 void SpoilLog(const Faults& faults, const std::vector<PlannedTrial>& trials, std::size_t index,
               JointLog& log, std::vector<std::string>& said);
 
-/// Throws InputError if a fault names something that does not exist, or shows in no trial.
+/// Throws InputError if a fault names something that does not exist, or has no effect in any trial.
 void CheckFaults(const Faults& faults, const TrueRobot& robot,
                  const std::vector<NamedCluster>& clusters,
                  const std::vector<PlannedTrial>& trials);

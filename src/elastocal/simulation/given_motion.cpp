@@ -122,9 +122,10 @@ class GivenMotionPlanner {
     }
   }
 
-  /// The robot plays the motion without a break: where one of these feet stands through two trials,
-  /// it stays. It becomes the first foot of both, which is the one that is flat on the floor. A
-  /// foot beside one that stays already cannot: the robot's errors put it elsewhere.
+  /// Keeps a foot in its place if it stands through two trials, because the robot plays the motion
+  /// without a break. It becomes the first foot of both trials, which is the one that is flat on
+  /// the floor. If another foot of the trial before stays already, this one cannot, because the
+  /// robot's errors put it elsewhere.
   void StayOn(const std::vector<int>& feet, std::vector<PlannedTrial>& trials,
               PlannedTrial& trial) const {
     for (int foot : feet) {
@@ -186,7 +187,7 @@ class GivenMotionPlanner {
     trial.postures = stretch.last - stretch.first + 1;
   }
 
-  /// Runs of the same posture become rests, and what is between them becomes a segment of samples.
+  /// Turns runs of the same posture into rests, and the samples between them into segments.
   void FollowSamples(const Stretch& stretch, PlannedTrial& trial) const {
     if (stretch.first == stretch.last) {
       throw InputError(PlaceOf(motion_, stretch.first) +

@@ -30,8 +30,8 @@ struct GivenMotionOptions {
 /// Stretches in which only standing legs move (the weight is shifted) are skipped.
 ///
 /// A trajectory is played without a break: a flat foot that stands from one trial into the next one
-/// stays where it is, and is the first foot of `support` in both. Of a robot on both feet between
-/// two trials on one, only the foot that it shares with the trial before stays.
+/// stays where it is, and is the first foot of `support` in both. If a robot stands on both feet
+/// between two trials on one foot, only the foot on which it stood in the trial before stays.
 ///
 /// Throws InputError, naming the line, if feet on the floor move against each other, if nothing is
 /// left to play, and for a stretch of a trajectory that has only one sample.

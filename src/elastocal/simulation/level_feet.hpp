@@ -11,22 +11,22 @@ namespace elastocal {
 
 /// Feet of a robot that stand on one level floor for the whole of a recording.
 ///
-/// A planner closes the loop of two legs by the described robot, with which the true legs would
-/// push the feet against each other. Here the ankles give way, as by a controller that evens out
-/// the moments of the feet: the legs' joints take the least change of position with which the true
-/// feet lie flat (by kinematics; what weight bends is left).
+/// A planner closes the loop of two legs with the described robot. The true legs would then push
+/// the feet against each other. Here the legs give way, as with a controller that evens out the
+/// moments of the feet: the legs' joints take the smallest change of position with which the true
+/// feet lie flat. This is kinematics only; deflections by the weight are not corrected.
 class LevelFeet {
  public:
-  /// The first of `support` (feet of legs) stands where BuildMjcf puts it; the others lie flat
-  /// where the posture `encoders` (by coordinate) has them. Keeps a reference. Throws
-  /// std::invalid_argument for what is no foot of a leg.
+  /// The first of `support` (feet of legs) stands where BuildMjcf puts it. The others lie flat
+  /// where the posture `encoders` (by coordinate) has them. Keeps a reference to the robot. Throws
+  /// std::invalid_argument for a link that is not the foot of a leg.
   LevelFeet(const TrueRobot& robot, const std::vector<int>& support,
             const Eigen::VectorXd& encoders);
 
   /// The posture (by coordinate) with the feet in their places.
   Eigen::VectorXd Yield(Eigen::VectorXd encoders) const;
 
-  /// Where the feet stand, the floor being z = 0.
+  /// Poses of the standing feet; the floor is z = 0.
   const std::vector<Transform>& T_floor_foot() const { return T_floor_foot_; }
 
  private:

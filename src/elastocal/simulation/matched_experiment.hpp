@@ -19,8 +19,8 @@ struct MatchedExperiment {
   Eigen::VectorXd truth;  ///< errors, one for each parameter of `model`, SI
 };
 
-/// Draws errors for the `identifiable` parameters of a model; they are zero for all others and for
-/// T0, because the waist has its own pose in every posture. The options give the sizes of joint
+/// Draws errors for the `identifiable` parameters of a model. All others are zero, and so is T0,
+/// because the waist has its own pose in every posture. The options give the sizes of joint
 /// offsets, lengths and angles, markers, joint springs (bending like torsion) and torque biases.
 /// Lumped compliances of legs are uniform between those of stiff and soft legs, 2e-6 to 9e-6 m/N
 /// and 2e-6 to 5e-5 rad/(N.m), times the legs' elasticity scale.
@@ -31,9 +31,9 @@ Eigen::VectorXd DrawMatchedTruth(const ErrorModel& model, const std::vector<int>
 MatchedExperiment MatchExperiment(VirtualExperiment plan, const ErrorModel& model,
                                   const std::vector<int>& identifiable);
 
-/// Plays a motion quasi-statically; encoders follow exactly. On one leg of the model, the foot is
-/// where the experiment puts it. Otherwise the waist is where the nominal robot has it above its
-/// first foot (without feet, where the experiment puts it).
+/// Plays a motion quasi-statically; encoders follow the commands exactly. If the robot stands on
+/// one leg of the model, the foot is where the experiment puts it. Otherwise the waist is where the
+/// nominal robot has it above its first foot (without feet, where the experiment puts it).
 TrueMotion PlayMatchedMotion(const MatchedExperiment& experiment, std::size_t index);
 
 /// Plays and measures a trial, like RunTrial.

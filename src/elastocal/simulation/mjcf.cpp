@@ -52,8 +52,9 @@ class MjcfWriter {
 
   std::string text;
 
-  /// What touches the floor. It gives way by hundredths of a millimetre under a robot on one foot:
-  /// soles give way by springs of their own (MuJoCo's default gives way by half a millimetre).
+  /// Attributes of parts that touch the floor. The contact gives way by hundredths of a millimetre
+  /// under a robot on one foot, because soles have springs of their own (MuJoCo's default gives way
+  /// by half a millimetre).
   std::string OnFloor() const {
     return Attribute("friction", Number(options_.floor_friction) + " 0.01 0.001") +
            R"( solimp="0.99 0.99 0.001")";
@@ -130,8 +131,8 @@ class MjcfWriter {
     if (halved) text += "</body>\n";
   }
 
-  /// Writes a foot on the floor. One that is held by a constraint is heavy: the lighter a body is,
-  /// the more does MuJoCo let its constraints give way.
+  /// Writes a foot on the floor. A foot that is held by a constraint is heavy, because MuJoCo lets
+  /// the constraints of lighter bodies give way more.
   void WriteSole(int sole) {
     const Link& link = FootLink(sole);
     text += "<body" + Attribute("name", "s" + std::to_string(sole)) +

@@ -25,19 +25,20 @@ struct PhysicsOptions {
   /// Inertia and damping of the springs, as times, s; see MjcfModel.
   double spring_inertia_time_s = 0.010;
   double spring_damping_time_s = 0.020;
-  /// What of the feet touches the floor. Other feet are flat, 0.20 m long and 0.12 m wide.
+  /// Soles of the feet. A foot without an entry is flat, 0.20 m long and 0.12 m wide.
   std::vector<Sole> soles = {};
   double floor_friction = 0.8;
   double gravity = 9.81;  ///< m/s^2, downwards
-  /// By which gravity is turned about x and y of the world: what the robot stands on is not level.
+  /// Rotation of gravity about x and y of the world: the floor on which the robot stands is not
+  /// level.
   double gravity_tilt_x = 0.0, gravity_tilt_y = 0.0;  ///< rad
 };
 
-/// A flat square plate of the robot, which a table can carry without friction. Both are a little
-/// soft: MuJoCo's contact gives way by tenths of a millimetre under some tens of newtons.
+/// A flat square plate of the robot, which can lie on a table without friction. The contact is a
+/// little soft: in MuJoCo it gives way by tenths of a millimetre under some tens of newtons.
 struct PhysicalPlate {
   int link = 0;
-  /// Of the middle of its face; z is the normal, out of the table.
+  /// Pose of the middle of its face; z is the normal that points out of the table.
   Transform T_link_face = Transform::Identity();
   double edge = 0.08;  ///< m
 };
@@ -54,7 +55,7 @@ struct PhysicalPlate {
 ///   on which the robot stands `s<i>` (i: index into `support`).
 /// - The root of the tree is the waist, with a floating joint: branches are shortest from there,
 ///   and MuJoCo's time grows with the square of their length. With Standing::kWelded, weld
-///   constraints hold the soles to a micrometre; where the robot stands freely, they are boxes or
+///   constraints hold the soles to a micrometre; if the robot stands freely, they are boxes or
 ///   balls on the floor. Without support, the waist is fixed.
 ///
 /// Springs are stiff (1e5 N.m/rad) for the small bodies that they carry. MuJoCo integrates damping
@@ -65,16 +66,16 @@ struct PhysicalPlate {
 /// and deflections follow the load within some tens of milliseconds.
 struct MjcfModel {
   std::string xml;
-  std::vector<Transform> T_world_foot;              ///< where the soles of `support` stand
-  Transform T_world_waist = Transform::Identity();  ///< as the robot is put down
+  std::vector<Transform> T_world_foot;              ///< poses of the soles of `support`
+  Transform T_world_waist = Transform::Identity();  ///< when the robot is put down
 };
 
-/// `encoders` is the posture (by coordinate) in which the robot is put on the floor. It decides
-/// where a second sole stands, so that the legs are not under stress except by their errors. The
-/// first sole lies under the origin of the world's frame, with the attitude that it has when the
-/// root link is upright in the zero posture of the description; three and more balls all touch the
-/// floor, as nearly as they can. Throws std::invalid_argument for a support that is not the foot of
-/// a leg, and for kFree without support.
+/// Writes the model. `encoders` is the posture (by coordinate) in which the robot is put on the
+/// floor. It decides where a second sole stands, so that the legs are not under stress except by
+/// their errors. The first sole lies under the origin of the world's frame, with the attitude that
+/// it has when the root link is upright in the zero posture of the description. Three or more balls
+/// all touch the floor, as nearly as they can. Throws std::invalid_argument for a support that is
+/// not the foot of a leg, and for kFree without support.
 MjcfModel BuildMjcf(const TrueRobot& robot, const std::vector<int>& support,
                     const Eigen::VectorXd& encoders, const PhysicsOptions& options,
                     const std::vector<PhysicalPlate>& plates = {});

@@ -6,14 +6,14 @@
 
 namespace elastocal {
 
-/// Writes down what a playing robot truly does, frame by frame.
+/// Records what a robot that plays a motion truly does, frame by frame.
 class MotionRecorder {
  public:
   /// Keeps a reference to the robot.
   MotionRecorder(const TrueRobot& robot, const Motion& played, const Transform& T_camera_world);
 
   Eigen::Index frames() const { return motion.markers.rows(); }
-  /// The soles at the beginning.
+  /// Records the poses of the soles at the beginning.
   void Begin(const VirtualRobot& body, std::size_t soles);
   void Record(Eigen::Index frame, const VirtualRobot& body);
 
@@ -24,7 +24,7 @@ class MotionRecorder {
   Transform T_camera_world_;
 };
 
-/// What is thrown when a robot that stands freely falls.
+/// The error that is thrown when a robot that stands freely falls.
 InputError Fallen(double time_s);
 
 }  // namespace elastocal

@@ -18,8 +18,8 @@ struct MotionSegment {
   double duration_s = 0.0;
   Eigen::VectorXd from,
       to;               ///< by coordinate; for a sine, both are the posture around which it moves
-  int coordinate = -1;  ///< that moves in a sine; -1: a quintic polynomial between postures
-  double centre = 0.0, amplitude = 0.0, frequency_hz = 0.0;  ///< of a sine, rad or m
+  int coordinate = -1;  ///< coordinate of a sine; -1: a quintic polynomial between postures
+  double centre = 0.0, amplitude = 0.0, frequency_hz = 0.0;  ///< of a sine: rad or m, Hz
   /// Given samples: their times from the segment's beginning, and their positions, samples x
   /// coordinates, joined by Catmull-Rom's cubics. Empty for other segments.
   Eigen::VectorXd sample_s = {};
@@ -43,7 +43,7 @@ struct MotionOptions {
   std::uint64_t seed = 1;
   PostureOptions postures;
   double lead_in_s =
-      5.0;  ///< at rest before the first motion (cameras start before the robot's log)
+      5.0;  ///< time at rest before the first motion (cameras start before the robot's log)
   double move_s = 3.5, rest_s = 1.5;  ///< for each posture; together 5 s, as in the paper
   int head_postures = 8;  ///< for chains with fewer than PostureOptions::arm_joints joints
   int arm_postures = 32;  ///< for other chains that are not legs

@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kDescribedHeight = 1.083;  // of the robot for which EndWorkspace is given, m
+constexpr double kDescribedHeight = 1.083;  // m, of the robot to which PostureOptions belong
 
 /// Range of a coordinate without the margin.
 std::pair<double, double> Range(const RobotTree& tree, int coordinate, double margin) {

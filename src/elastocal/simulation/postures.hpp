@@ -59,18 +59,18 @@ class PostureSampler {
   /// The robot stands on all feet with slightly bent knees; without legs, it is in the home
   /// posture.
   const Eigen::VectorXd& stand() const { return stand_; }
-  /// Whether it can do so, on how many legs robots that balance do (one or two), and on each of two
-  /// alone.
+  /// Whether the robot can stand: it has one or two legs, all feet reach the floor in stand(), and
+  /// with two legs, it can stand on each of them alone. True without legs.
   bool stands() const { return stands_; }
 
-  /// As in stand(), with the joints of `chain` drawn at random in their ranges. The end of an arm
-  /// is in the workspace of hands; if hardly any posture has it there (a robot of other shape), the
-  /// joint limits alone count.
+  /// The posture stand() with the joints of `chain` drawn at random in their ranges. The end of an
+  /// arm is in the workspace of hands, unless hardly any posture has it there (a robot of another
+  /// shape); then only the joint limits count.
   Eigen::VectorXd DrawUpper(const NamedChain& chain);
 
-  /// The foot of the leg `swing` is in its workspace, while the robot stands on the bent leg
-  /// `support` with its foot flat on the floor; all other joints are as in `q`. Throws InputError
-  /// if no such posture is found.
+  /// A posture in which the foot of the leg `swing` is in its workspace, while the robot stands on
+  /// the bent leg `support` with its foot flat on the floor; all other joints are as in `q`. Throws
+  /// InputError if no such posture is found.
   Eigen::VectorXd DrawSwing(const Eigen::VectorXd& q, const Leg& swing, const Leg& support);
 
   /// Draws only the support leg; the other joints are those of `q`. Returns nothing if this draw is

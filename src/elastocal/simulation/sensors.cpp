@@ -80,8 +80,8 @@ Eigen::RowVectorXd Interpolate(const Eigen::MatrixXd& samples, double position) 
          (3.0 * s2 - 2.0 * s3) * row(i + 1) + (s3 - s2) * slope_1;
 }
 
-/// Puts the causes of error of one joint into its logged positions: what they add to the joint's
-/// position, its encoder does not show.
+/// Adds the causes of error of one joint to its logged positions. They displace the joint, and the
+/// encoder does not show this.
 void AddCauses(const TrueRobot& robot, const SensorOptions& options, JointLog& log) {
   constexpr double kLeastSpeed = 1e-3;  // rad/s: slower is no motion
   if (options.cause_joint.empty()) return;

@@ -36,14 +36,14 @@ struct SensorOptions {
   int encoder_bits = 19;         ///< bits for one turn; 0: not quantised
   double torque_noise_sd = 0.2;  ///< N.m or N
 
-  // What neither geometry nor springs describe (docs/diagnose.md), of one joint: the log differs
-  // from the joint's position by it. None where the joint is not named.
+  // Causes of error of one joint that neither geometry nor springs describe (docs/diagnose.md): the
+  // logged position differs from the joint's position by them. Without a name there are none.
   std::string cause_joint;
   double eccentricity = 0.0;   ///< amplitude of sin q, rad
   double gear_error = 0.0;     ///< share of the position
   double backlash = 0.0;       ///< half width, by the sign of the load, rad
   double hysteresis = 0.0;     ///< half width, by the direction of the last motion, rad
-  double cameras_drift = 0.0;  ///< of all markers along x, m/h, whatever the joint
+  double cameras_drift = 0.0;  ///< drift of all markers along x, m/h; needs no joint
 };
 
 /// Faults that are put in on purpose; by default none.
@@ -67,10 +67,10 @@ struct Faults {
   /// end of the move to it until the end of the next move; 0: none.
   int slipped_posture = 0;
   double slip = 3e-3;
-  std::string trial;  ///< in which the above happens; empty: in every trial
+  std::string trial;  ///< trial in which the faults above happen; empty: every trial
 };
 
-/// Markers that are on one link together.
+/// The markers of one link, with a name.
 struct NamedCluster {
   std::string name;
   std::vector<int> markers;  ///< indices of the robot's markers

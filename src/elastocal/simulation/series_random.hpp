@@ -10,25 +10,27 @@
 
 namespace elastocal {
 
-/// Robots of one series have errors in common: of the same jig, of the same wrong length in CAD.
+/// Errors that the robots of one series have in common (from the same jig, or the same wrong length
+/// in CAD).
 struct SeriesOptions {
-  int seed = 1;        ///< of what the series has in common
-  double share = 0.0;  ///< of the variance of each error that it has in common, 0 to 1
+  int seed = 1;        ///< seed of the errors that the series has in common
+  double share = 0.0;  ///< share of each error's variance that is in common, 0 to 1
 };
 
-/// Random numbers for one kind of error of one robot of a series: distributed like those of Random,
-/// and over the robots of a series correlated by the share. With the share 0 they are those of
-/// Random(StreamSeed(robot_seed, purpose)).
+/// Random numbers for one kind of error of one robot of a series. They are distributed like those
+/// of Random, and their correlation between two robots of the series is the share. With share 0
+/// they are those of Random(StreamSeed(robot_seed, purpose)).
 class SeriesRandom {
  public:
   SeriesRandom(std::uint64_t robot_seed, const SeriesOptions& series, std::string_view purpose);
 
-  /// Normal with mean 0 and standard deviation `sd`: a weighted sum of both draws.
+  /// Normal with mean 0 and standard deviation `sd`: a weighted sum of the robot's own draw and the
+  /// series' common draw.
   double Normal(double sd);
   Eigen::VectorXd NormalVector(Eigen::Index size, double sd);
-  /// Uniform in [lower, upper]: the probability of such a sum.
+  /// Uniform in [lower, upper]: the normal distribution function of such a sum, scaled.
   double Uniform(double lower, double upper);
-  /// What a robot does not share, with whatever share.
+  /// Random numbers of the robot alone, for what a series never has in common.
   Random& own() { return own_; }
 
  private:

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLongestSettling = 4.0;  // s
 constexpr double kLook = 0.01;            // s between two looks at the robot
-constexpr double kLoaded = 0.05;  // share of the weight on a sole from which on it is loaded
+constexpr double kLoaded = 0.05;  // share of the vertical force above which a sole is loaded
 
 /// The samples before and after a time, and the share of the second one. `at` moves along with the
 /// time.
@@ -37,7 +37,7 @@ void MoveTo(const JointMotion& motion, double time_s, Between& between) {
   between.share = std::clamp((time_s - motion.time_s[at]) / span, 0.0, 1.0);
 }
 
-/// Contact forces, averaged over the latest looks at the robot since the planned support changed.
+/// Contact forces, averaged over the latest looks at the robot with the present planned support.
 class AverageContact {
  public:
   explicit AverageContact(std::size_t looks) : looks_(looks) {}
@@ -56,7 +56,7 @@ class AverageContact {
     if (latest_.size() > looks_) latest_.pop_front();
   }
 
-  /// Whether these are so many that the touch of a sole is no more than a small part of them.
+  /// Whether there are at least half of all looks, so that the first touch of a sole counts little.
   bool Tells() const { return 2 * latest_.size() >= looks_; }
 
   /// Distance of the zero-moment point to the edge of the loaded soles, m.
@@ -82,11 +82,11 @@ class AverageContact {
       latest_;  // floor: force, moment; force on each sole along the vertical
 };
 
-/// What those who put a robot down do with their hands: they turn its waist upright, with the
-/// moment of a spring that would hold its weight twice over and of a damper, in the world's axes.
+/// The hands of those who put a robot down. They turn its waist upright by the moment of a spring,
+/// which could hold twice its weight, and of a damper, in the world's axes.
 class Hands {
  public:
-  /// `height`: of what they hold, m.
+  /// `height` is that of the part that they hold, m.
   Hands(const TrueRobot& robot, const VirtualRobot& body, double height)
       : stiffness_(2.0 * TotalMass(robot.tree) * kGravity.norm() * height),
         before_(body.WaistPose().linear()) {}
@@ -170,7 +170,8 @@ class StandingPlay {
     correction_ = options_.stabiliser->Correct(planned, support, Felt(), interval_s_) - planned;
   }
 
-  /// In the first posture, until the robot rests; how the unit is mounted may be seen from there.
+  /// Lets the robot come to rest in the first posture. If R_world_root_at_rest is given, the
+  /// mounting of the inertial unit and the error of masses follow from this rest.
   void Settle() {
     body_.Settle(kLongestSettling);
     if (!options_.R_world_root_at_rest) return;
@@ -209,7 +210,7 @@ class StandingPlay {
       body_.Step();
       if (i % per_look_ != 0) continue;
       if (body_.FallenFrom(height_)) {
-        // It lies there as soon as the motion begins.
+        // The robot fell before the contact forces were averaged.
         constexpr double kNever = std::numeric_limits<double>::infinity();
         if (run.least_zmp_margin == kNever) run.least_zmp_margin = -kNever;
         return run;
@@ -220,7 +221,7 @@ class StandingPlay {
     return run;
   }
 
-  /// What is measured every hundredth of a second, and what the stabiliser then does.
+  /// Measures the robot, every hundredth of a second, and lets the stabiliser correct it.
   void Look(const Transform& begin, const Between& now, StandingRun& run) {
     const double upright = body_.WaistPose().linear().col(2).dot(begin.linear().col(2));
     run.largest_lean = std::max(run.largest_lean, std::acos(std::clamp(upright, -1.0, 1.0)));
@@ -243,12 +244,12 @@ class StandingPlay {
   const StandThroughOptions& options_;
   const Eigen::MatrixXd& commanded_;
   VirtualRobot body_;
-  double height_;  // of what falls, m
+  double height_;  // VirtualRobot::Height() at the beginning, m
   long per_look_;  // steps of the simulation between two looks
   double interval_s_;
   AverageContact contact_;
   Eigen::Matrix3d R_root_unit_ = Eigen::Matrix3d::Identity();
-  Eigen::VectorXd correction_;  // by the stabiliser, to what is commanded
+  Eigen::VectorXd correction_;  // what the stabiliser adds to the commands
 };
 
 }  // namespace

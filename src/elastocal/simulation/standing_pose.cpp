@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-constexpr int kMostSteps = 12;  // of the fixed point of loads; each gains two digits or more
+constexpr int kMostSteps = 12;  // steps of the fixed point; each gains two digits or more
 constexpr double kAtRest =
     1e-9;  // N.m: smaller changes of loads move nothing by more than rounding
 

@@ -26,7 +26,8 @@ StandingPose StandOnLeg(const ErrorModel& model, const Geometry& geometry, const
                         int leg, const Transform& T_ref_foot, const Eigen::Vector3d& gravity_ref,
                         const std::vector<int>& torque_sensors);
 
-/// The same with the root link held still at `T_ref_waist`: the legs hang.
+/// The robot with its root link held still at `T_ref_waist`, deflected by its weight; the legs
+/// hang.
 StandingPose HoldWaist(const ErrorModel& model, const Geometry& geometry, const Eigen::VectorXd& q,
                        const Transform& T_ref_waist, const Eigen::Vector3d& gravity_ref,
                        const std::vector<int>& torque_sensors);

@@ -7,9 +7,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kTick = 0.01;  // s, of the controller
+constexpr double kTick = 0.01;  // s, period of the controller
 
-/// What the controller does about a contact, in the axes of the face.
+/// The controller's answer to a contact, in the axes of the face.
 struct Answer {
   Vector6d twist = Vector6d::Zero();  ///< m/s and rad/s
   bool flush = false;
@@ -17,8 +17,8 @@ struct Answer {
 
 Answer AnswerTo(const Vector6d& wrench, double edge, const TouchOptions& options) {
   constexpr double kGive = 2e-4;   // m/s for each N that is missing
-  constexpr double kMiddle = 0.5;  // share of half the edge
-  constexpr double kShare = 0.2;   // of the force
+  constexpr double kMiddle = 0.5;  // the force must act within this share of half the edge
+  constexpr double kShare = 0.2;   // largest relative error of the force
   Answer answer;
   const double surplus = wrench[2] - options.force;
   answer.twist[2] = std::clamp(kGive * surplus, -options.approach, options.approach);
@@ -63,9 +63,9 @@ void MovePlate(const PhysicalPlate& described, const Vector6d& by, MovingChain& 
 
 Touch TouchTable(VirtualRobot& robot, int plate, const PhysicalPlate& described, MovingChain& arm,
                  const TouchOptions& options, Eigen::VectorXd& command) {
-  constexpr double kFirst = 0.5;       // N: there is something
-  constexpr double kSettled_s = 0.3;   // flush all the time
-  constexpr double kPatience_s = 4.0;  // then it slows down: a stiff arm rocks from edge to edge
+  constexpr double kFirst = 0.5;       // N: a larger force means that the plate touches
+  constexpr double kSettled_s = 0.3;   // the plate must be flush for this time
+  constexpr double kPatience_s = 4.0;  // later it slows down: a stiff arm rocks from edge to edge
   const int steps = static_cast<int>(std::lround(kTick / robot.time_step_s()));
   Touch touch;
   Answer down;

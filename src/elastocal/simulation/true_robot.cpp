@@ -13,15 +13,15 @@
 namespace elastocal {
 namespace {
 
-/// Stiffnesses are those of robots of a person's weight. Others carry tonnes: gravity turns no
-/// joint by more than this.
+/// Limits a compliance so that gravity deflects no joint by more than 0.01 rad (m). Stiffnesses are
+/// those of robots of a person's weight, but some robots carry tonnes.
 void KeepStiffEnough(double torque, double& compliance) {
   constexpr double kLargestDeflection = 0.01;  // rad or m
   if (torque * compliance > kLargestDeflection) compliance = kLargestDeflection / torque;
 }
 
-/// No motor is stronger than what lifts the robot three times at its full reach, N.m: a larger
-/// effort in a URDF (50000 of an ergoCub) is a number that somebody had to write.
+/// Largest likely torque of a motor, N.m: it holds three times the robot's weight at its full
+/// reach. A larger effort in a URDF (50000 in one of an ergoCub) is a placeholder.
 double LargestLikelyEffort(const RobotTree& tree) {
   double mass = 0.0;
   for (const Link& link : tree.links) mass += link.mass;
@@ -74,8 +74,8 @@ class Drawing {
     }
   }
 
-  /// The true rods. They were adjusted when the linkage was put together on the true tree, so that
-  /// the motors read there what the description says, but for the errors of their lengths.
+  /// The true rods. They were adjusted when the linkage was put together on the true tree: except
+  /// for the errors of the rods' lengths, the motors then read what the description says.
   Linkage Assembled(const Linkage& linkage, Eigen::VectorXd& errors) const {
     const auto motors = MotorPositions(robot_.described, linkage, linkage.assembled);
     Eigen::VectorXd but_lengths = errors;
@@ -214,8 +214,8 @@ class Drawing {
   TrueRobot& robot_;
 };
 
-/// Where the rods of linkage `i` of one tree have its joints for the motors that those of the other
-/// tree have at `q`; out of reach they stay.
+/// Moves the joints of linkage `i` in `q` from their positions by the rods of tree `from` to those
+/// by the rods of tree `to`, for the same positions of the motors. Joints out of reach stay.
 void MoveBetween(const RobotTree& from, const RobotTree& to, std::size_t i, Eigen::VectorXd& q) {
   const std::vector<int> coordinates = CoordinatesOf(from, from.linkages[i]);
   const Eigen::VectorXd positions = q(coordinates);

@@ -21,11 +21,11 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 /// docs/accuracy.md says why. "Upper" means head, arms and trunk.
 struct TruthOptions {
   std::uint64_t seed = 1;
-  /// What robots of a series have in common of all their errors but their markers' positions.
+  /// Errors that robots of a series have in common; all errors except positions of markers.
   SeriesOptions series = {};
 
-  /// Lengths below, but for those of markers, are of a robot on legs whose root link stands this
-  /// high [m]; on a robot that is half as high they are half as large.
+  /// Lengths below (except those of markers) are for a robot on legs whose root link stands this
+  /// high [m]. On a robot that is half as high they are half as large.
   double described_height = 1.083;
 
   // Geometry: every joint's placement has a general displacement (three lengths, three angles).
@@ -66,10 +66,10 @@ struct TruthOptions {
   double torque_bias_sd = 0.5;   ///< N.m (at most 2 % of the largest effort)
 
   // Causes beyond geometry and springs (docs/diagnose.md).
-  std::string heavy_link = {};       ///< weighs more than it should, whatever mass_sd; empty: none
-  double heavy_share = 0.0;          ///< by this share
-  std::string creeping_marker = {};  ///< moves along x of its link; empty: none
-  double creep = 0.0;                ///< m/h
+  std::string heavy_link = {};       ///< link with an additional error of mass; empty: none
+  double heavy_share = 0.0;          ///< additional mass of `heavy_link`, share of its mass
+  std::string creeping_marker = {};  ///< marker that moves along x of its link; empty: none
+  double creep = 0.0;                ///< speed of `creeping_marker`, m/h
 };
 
 /// The true robot, with what its description does not say.
@@ -88,8 +88,8 @@ struct TrueRobot {
   Eigen::VectorXd torque_gain, torque_bias;  ///< by joint: reading = gain * torque + bias
   int creeping_marker = -1;                  ///< moves along x of its link; -1: none
   double creep = 0.0;                        ///< m/h, from the beginning of a trial
-  /// As described, where it has linkages. `tree` has the true rods, whose loops close on the true
-  /// tree: their joints have no offset.
+  /// The robot as described, if it has linkages. `tree` has the true rods, whose loops close on the
+  /// true tree; joints of linkages have no `offset`.
   RobotTree described;
   std::vector<Eigen::VectorXd> linkage_errors;  ///< of the true rods, by linkage: WithErrors
 };
@@ -108,7 +108,7 @@ TrueRobot DrawTrueRobot(const TrueRobot& nominal, const TruthOptions& options);
 /// those that the described rods give.
 Eigen::VectorXd TrueJointPositions(const TrueRobot& robot, const Eigen::VectorXd& encoders);
 
-/// The other way, by joint for true positions by joint.
+/// Inverse of TrueJointPositions: encoder positions, by joint, for true positions by joint.
 Eigen::VectorXd EncoderPositions(const TrueRobot& robot, const Eigen::VectorXd& positions);
 
 /// Poses of all links in the root link's frame, like LinkTransforms, for true positions by joint.

@@ -17,7 +17,7 @@ namespace elastocal {
 namespace {
 
 /// Draws the poses at which the robot is put down: near one place of the laboratory, roughly in one
-/// direction. Where a foot stays, it is not put down anew.
+/// direction. If a foot stays (PlannedTrial::stays), the robot is not put down anew.
 std::vector<Transform> DrawPlaces(std::uint64_t seed, const std::vector<PlannedTrial>& trials) {
   Random random(StreamSeed(seed, "place"));
   const double yaw = random.Uniform(-M_PI, M_PI);
@@ -32,7 +32,8 @@ std::vector<Transform> DrawPlaces(std::uint64_t seed, const std::vector<PlannedT
   return places;
 }
 
-/// Where a motion comes to rest: the ends of its rests, and in given samples those that repeat.
+/// Postures in which a motion comes to rest: those of its rests, and of given samples those that
+/// repeat.
 std::vector<Eigen::VectorXd> RestPostures(const Motion& motion) {
   std::vector<Eigen::VectorXd> postures;
   for (const MotionSegment& segment : motion.segments) {
@@ -154,7 +155,7 @@ SimulatedTrial RunTrial(const VirtualExperiment& experiment, std::size_t index) 
 WaistGive LargestWaistDeflection(const VirtualExperiment& experiment, std::size_t index,
                                  const TrueMotion& motion) {
   const PlannedTrial& trial = experiment.trials[index];
-  // Balls turn where they stand: they say nothing of where the waist is.
+  // Balls turn where they stand, so that they do not tell the pose of the waist.
   const PhysicsOptions& physics = experiment.options.physics;
   if (trial.support.empty() || CountBalls(trial.support, physics) > 0) return {};
   const auto foot = static_cast<std::size_t>(trial.support[0]);

@@ -25,10 +25,10 @@ struct DescribedRobot {
 /// All options of a virtual experiment. `seed` replaces the seeds of the parts.
 struct VirtualExperimentOptions {
   std::uint64_t seed = 1;
-  /// Seed of the robot's errors if it is another one than `seed`: the same robot with other
-  /// postures, places and noise, as in a second recording of it.
+  /// Seed of the robot's errors, if not `seed`. With it, a second recording of the same robot has
+  /// other postures, places and noise.
   std::optional<std::uint64_t> robot_seed = {};
-  /// The base drives between the rests of trials without support (DriveBase).
+  /// Whether the root link drives between the rests of trials without support (DriveBase).
   bool free_root = false;
   TruthOptions truth;
   PhysicsOptions physics;
@@ -43,8 +43,9 @@ struct VirtualExperimentOptions {
 /// still yield to the load, which encoders measure. Motions and physics stay.
 void SwitchOffImperfections(VirtualExperimentOptions& options);
 
-/// A leg's lumped compliance, and the posture in which it was computed: the mean of those in which
-/// the robot rests on this leg alone in calibration trials (else that in which it stands).
+/// A leg's lumped compliance, and the posture in which it was computed: the mean of the postures in
+/// which the robot rests on this leg alone in calibration trials, or without any, the posture in
+/// which it stands.
 struct LegCompliance {
   std::string chain;
   int foot_link = 0;

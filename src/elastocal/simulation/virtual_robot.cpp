@@ -21,8 +21,8 @@ namespace {
 using ModelPointer = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
 using DataPointer = std::unique_ptr<mjData, decltype(&mj_deleteData)>;
 
-/// A message of MuJoCo, in which bodies have our numbers ("b24"), in one line and with the names of
-/// the links that these bodies begin with.
+/// A message of MuJoCo in one line. The numbers of bodies in it ("b24") are replaced by the names
+/// of the links with which these bodies begin.
 std::string WithLinkNames(std::string message, const RobotTree& tree) {
   for (int body = tree.body_count() - 1; body >= 0; --body) {
     const Joint* joint = body > 0 ? &tree.joints[static_cast<std::size_t>(body - 1)] : nullptr;
@@ -35,7 +35,8 @@ std::string WithLinkNames(std::string message, const RobotTree& tree) {
   return message;
 }
 
-/// MuJoCo would write its warnings to a file in the current folder; Unstable says them.
+/// Replaces MuJoCo's handler, which writes warnings to a file in the current folder. Unstable()
+/// reports them instead.
 void NoWarning(const char* /*message*/) {}
 
 ModelPointer Compile(const std::string& xml, const RobotTree& tree) {
@@ -86,7 +87,7 @@ struct VirtualRobot::Simulation {
   std::vector<int> bodies, soles;        // MuJoCo's, by body of the tree and by support
   std::vector<PhysicalPlate> plates;
   Eigen::VectorXd bristle;                        // by joint, state of friction in [-1, 1]
-  Eigen::Vector3d top = Eigen::Vector3d::Zero();  // in the root link: what is high while it stands
+  Eigen::Vector3d top = Eigen::Vector3d::Zero();  // point of the root link's frame, see Height()
 
   Simulation(const TrueRobot& true_robot, const MjcfModel& mjcf,
              const std::vector<PhysicalPlate>& with_plates)
@@ -130,8 +131,8 @@ struct VirtualRobot::Simulation {
     return {force, moment};
   }
 
-  /// The sum of what floor and tables exert on geometries, in the axes of a frame and about its
-  /// origin.
+  /// Sum of the wrenches of floor and tables on the chosen geometries, in the axes of a frame and
+  /// about its origin.
   template <typename Chosen>
   Vector6d WrenchAt(const Transform& T_world_frame, const Chosen& chosen) const {
     const Eigen::Matrix3d R = T_world_frame.linear().transpose();

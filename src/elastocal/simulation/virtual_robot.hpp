@@ -43,12 +43,13 @@ class VirtualRobot {
   Eigen::VectorXd Encoders() const;
   Eigen::VectorXd Torques() const;
 
-  /// Height of what falls when the robot does, m: the root link, or the hips where that is a frame
-  /// on the floor.
+  /// Height of a part that is high while the robot stands, m: the root link, or the hips if the
+  /// root link is a frame on the floor.
   double Height() const;
-  /// Whether it is below 70 % of a height that it had at rest, or Unstable.
+  /// Whether Height() is at most 70 % of the `height` that it had at rest, or the robot is
+  /// Unstable.
   bool FallenFrom(double height) const;
-  /// Whether numbers have grown beyond all bounds, after which MuJoCo starts anew.
+  /// Whether the simulation has diverged, after which MuJoCo starts anew.
   bool Unstable() const;
 
   Transform WaistPose() const;         ///< of the root link in the world
@@ -63,7 +64,8 @@ class VirtualRobot {
   /// The same for one sole in `support` alone: force, and moment about its origin, in its axes, as
   /// a force sensor in the foot measures them.
   Vector6d SoleWrench(int index) const;
-  /// Puts the table of a plate there, its plane being z = 0 of its frame. It begins out of reach.
+  /// Puts the table of a plate at a pose; its plane is z = 0 of its frame. Before the first call it
+  /// is out of reach.
   void PlaceTable(int plate, const Transform& T_world_table);
   Transform PlatePose(int plate) const;  ///< of the middle of its face
   /// Force of the table on a plate and its moment about the middle of its face, in the axes of the

@@ -13,12 +13,12 @@ WaistCompliance LumpedWaistCompliance(const TrueRobot& robot, const Leg& leg,
   constexpr double kForce = 20.0;
   constexpr double kMoment = 4.0;
   options.standing = Standing::kWelded;
-  options.gravity = 0.0;  // the weight on a leg that gives way is a load of its own
+  options.gravity = 0.0;  // the weight of the displaced robot would be a further load
   options.servo_stiffness *= kHeld;
   options.sliding_servo_stiffness *= kHeld;
   TrueRobot smooth = robot;
   smooth.friction.setZero();
-  // What the leg carries may as well be rigid, which is faster.
+  // The parts that the leg carries are made rigid, which is faster.
   for (std::size_t k = 0; k < smooth.tree.joints.size(); ++k) {
     const bool carries =
         std::find(leg.joints.begin(), leg.joints.end(), static_cast<int>(k)) != leg.joints.end();

@@ -20,8 +20,8 @@ struct WaistCompliance {
 
 /// Measures on the true robot what the paper calls K_w (eq. 6). The robot stands on one leg in a
 /// posture (by coordinate); known wrenches (20 N, 4 N.m, to either side) push the waist, and its
-/// displacement is read. Without the weight: under it a leg gives way more, as an inverted pendulum
-/// does, but in eq. 6 the weight's moment is part of the load.
+/// displacement is read. Gravity is off: under its weight a leg gives way more, as an inverted
+/// pendulum does, but in eq. 6 the weight's moment is part of the load.
 WaistCompliance LumpedWaistCompliance(const TrueRobot& robot, const Leg& leg,
                                       const Eigen::VectorXd& posture, PhysicsOptions options = {});
 

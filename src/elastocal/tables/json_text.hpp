@@ -5,14 +5,14 @@
 
 namespace elastocal {
 
-/// The text of a JSON file: indented by two blanks. Bytes that are no UTF-8, as names from users'
-/// files may have, become the replacement character.
+/// The text of a JSON file, indented by two spaces. Bytes that are not UTF-8, which names from
+/// users' files may have, become the replacement character.
 template <typename Json>
 std::string JsonText(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// The same in one line, without the line's end.
+/// The same text in one line, without a line end.
 template <typename Json>
 std::string JsonLine(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -27,7 +27,7 @@ constexpr std::size_t kLargestFile = 256u << 20;
 /// A file that is open for reading.
 class OpenFile {
  public:
-  /// Does not wait for somebody at the other end of a pipe.
+  /// Opens the file, without waiting for somebody at the other end of a pipe.
   explicit OpenFile(const std::filesystem::path& file)
       : file_(file), descriptor_(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
     if (descriptor_ < 0) FailToRead(file, errno);
@@ -77,7 +77,7 @@ std::string ReadFile(const std::filesystem::path& file) {
                      " MiB; at most 256 MiB are read");
   };
   if (size > kLargestFile) refuse_size(size);
-  // One byte more than the file has: that it grows meanwhile does not go unnoticed.
+  // One byte more than the size of the file shows whether it grows meanwhile.
   std::string contents(size + 1, '\0');
   std::size_t held = 0;
   while (const std::size_t count = open_file.Read(&contents[held], contents.size() - held)) {

@@ -6,8 +6,8 @@
 
 namespace elastocal {
 
-/// What a path leads to. Throws InputError where nobody can tell: a loop of links, a folder that
-/// may not be entered, a name that is too long.
+/// Type of the file to which a path leads. Throws InputError if it cannot be told: a loop of links,
+/// a folder that may not be entered, a name that is too long.
 std::filesystem::file_type FileTypeOf(const std::filesystem::path& path);
 
 /// Contents of a regular file, which is opened once. Throws InputError naming it: there is none, it

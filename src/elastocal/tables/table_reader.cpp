@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kLongestLine = 1u << 20;
 constexpr std::size_t kBlock = 1u << 16;
 
-/// The one of the separators that the header has most of, outside quotes.
+/// The separator that occurs most often in the header, outside quotes.
 char FindSeparator(std::span<const char> header) {
   constexpr std::array kSeparators = {',', ';', '\t'};
   std::array<int, kSeparators.size()> count{};
@@ -34,8 +34,8 @@ char FindSeparator(std::span<const char> header) {
 
 bool IsBlank(std::span<const char> line) { return Trim({line.data(), line.size()}).empty(); }
 
-/// Takes a quoted cell, whose opening quote is at `at`: moves its text together and returns where
-/// the line goes on, or null where the quotes do not end.
+/// Takes a quoted cell, whose opening quote is at `at`: removes the quotes from its text in place
+/// and returns the place where the line goes on, or null if the quotes do not end.
 char* TakeQuoted(char* at, char* end, std::string_view& cell) {
   char* const begin = ++at;
   char* to = begin;
@@ -62,7 +62,7 @@ TextStream::TextStream(std::string_view text) : std::istream(static_cast<std::st
   setg(begin, begin, begin + text.size());
 }
 
-/// Reads a further block of the text; false where there is none. The next line moves to the
+/// Reads a further block of the text; false if there is none. The next line moves to the
 /// beginning of the buffer.
 bool LineReader::Fill() {
   buffer_.erase(0, begin_);
@@ -186,8 +186,8 @@ void Table::CheckRowNumber() const {
        Quote(Cell(0)));
 }
 
-/// The same number with a decimal point. Where no comma separates, numbers may have decimal commas,
-/// all of them then.
+/// The number in a cell with a decimal point. If the separator is not a comma, all numbers may have
+/// decimal commas.
 std::string_view Table::WithPoint(int column) const {
   const std::string_view cell = Cell(column);
   const std::size_t at = separator_ == ',' ? std::string_view::npos : cell.find_first_of(".,");

@@ -15,7 +15,7 @@
 
 namespace elastocal {
 
-/// A table for reading. Throws InputError where ReadFile does.
+/// Opens a table for reading. Throws InputError like ReadFile.
 std::istringstream OpenTable(const std::filesystem::path& file);
 
 /// A text as a stream, without a copy of it; the text must outlive the stream.
@@ -25,8 +25,8 @@ class TextStream : private std::streambuf, public std::istream {
 };
 
 /// The lines of a text, one by one. A line ends with LF or CR LF or, where the first line does so,
-/// with CR. A byte-order mark is passed over. Reads on as lines are asked for, so that a file that
-/// is something else is refused by its first lines, whatever its size.
+/// with CR. A byte-order mark is passed over. The text is read only as lines are asked for, so that
+/// a large file of another kind is refused by its first lines.
 class LineReader {
  public:
   /// The stream must outlive the new object; `source` names it in messages.
@@ -48,17 +48,17 @@ class LineReader {
   std::istream& stream_;
   std::string source_;
   std::string buffer_;     ///< a part of the text
-  std::size_t begin_ = 0;  ///< of the next line in it
+  std::size_t begin_ = 0;  ///< beginning of the next line in `buffer_`
   char line_end_ = '\n';
   int line_ = 0;
 };
 
 enum class Quotes { kEnclose, kOrdinary };
 
-/// Splits a line into cells at the separators, spaces around cells removed. With Quotes::kEnclose a
-/// cell may stand in double quotes: separators in it are text, "" is one quote, and what it means
-/// replaces it in the line. False for quotes that do not enclose a whole cell. The cells are views
-/// into the line.
+/// Splits a line into cells at the separators and removes spaces around them. With Quotes::kEnclose
+/// a cell may be enclosed in double quotes: separators in it are then text, and "" is one quote;
+/// the line is changed in place. Returns false for quotes that do not enclose a whole cell. The
+/// cells are views into the line.
 bool SplitCells(std::span<char> line, char separator, Quotes quotes,
                 std::vector<std::string_view>& cells);
 
@@ -67,7 +67,7 @@ bool SplitCells(std::span<char> line, char separator, Quotes quotes,
 class Table {
  public:
   /// Reads the header. The stream must outlive the new object; `source` names it in messages.
-  /// Throws InputError where there is no header, and what Next throws.
+  /// Throws InputError if there is no header, and what Next throws.
   Table(std::istream& stream, const std::string& source);
 
   /// Reads the next row; false at the end. Throws InputError naming file and line: what LineReader
@@ -78,8 +78,8 @@ class Table {
   /// A cell of the row read last, by column from 0.
   std::string_view Cell(int column) const { return cells_[static_cast<std::size_t>(column)]; }
 
-  /// Whether a column is the first one and has no name (in pandas' words, "Unnamed: 0"): row
-  /// numbers, which pandas writes and nobody needs. Next throws where they are no whole numbers.
+  /// Whether a column has row numbers, as pandas writes them: it is the first one and has no name
+  /// (or "Unnamed: 0"). Next throws if they are no whole numbers.
   bool CountsRows(int column) const;
 
   /// A cell as a finite number, with a decimal point or, where no comma separates, a decimal comma
@@ -107,33 +107,33 @@ class Table {
   std::vector<std::string> header_;
   int rows_ = 0;
   mutable char decimal_mark_ =
-      '\0';  ///< of the first number that has one, where no comma separates
+      '\0';  ///< decimal mark of the first number that has one, if the separator is no comma
   mutable std::string number_;
 };
 
-/// What column names mean: the number of a quantity, from 0, or kPassedOver. Several names may mean
-/// one quantity.
+/// Meaning of column names: the number of a quantity, from 0, or kPassedOver. Several names may
+/// mean one quantity.
 using ColumnRoles = std::map<std::string, int>;
 constexpr int kPassedOver = -1;
 
-/// For each quantity its column, -1 where there is none; row numbers (Table::CountsRows) are passed
+/// For each quantity its column, or -1 if there is none; row numbers (Table::CountsRows) are passed
 /// over. Call it before the first row is read.
 /// Throws InputError: two columns of one quantity; an unknown column, with the nearest known name
 /// and `advice`; numbers or a comment where the header should be.
 std::vector<int> FindColumns(const Table& table, const ColumnRoles& roles, std::size_t quantities,
                              const std::string& advice);
 
-/// Whether the columns of a group are all there (of `quantities`, as FindColumns gives them); false
-/// where none is. Throws InputError for only some, naming the first that lacks. `names` are the
-/// names expected and `owner` what they belong to: "marker 'A'".
+/// Whether the columns of a group, as FindColumns gives them, are all there; false if none is. If
+/// only some are, throws InputError naming the first that is missing. `names` are the expected
+/// names and `owner` says to what they belong: "marker 'A'".
 bool HasGroup(const Table& table, std::span<const int> columns, std::span<const std::string> names,
               const std::string& owner);
 
-/// Adds the number in a column of the row read last. Throws InputError where it is not above the
-/// last one.
+/// Adds the time in a column of the row read last. Throws InputError if it is not above the last
+/// one.
 void AppendTime(const Table& table, int column, std::vector<double>& time);
 
-/// Numbers that were read row after row, as a matrix of so many rows (one or more).
+/// Numbers that were read row after row, as a matrix with `rows` rows (one or more).
 Eigen::MatrixXd StackRows(const std::vector<double>& numbers, std::size_t rows);
 
 }  // namespace elastocal

@@ -6,8 +6,8 @@
 
 namespace elastocal {
 
-/// A text as a cell that Table reads as the same text: in double quotes where it has separators,
-/// quotes or spaces at its ends. Throws InputError for a text with a line end, which no cell can
+/// A text as a cell that Table reads back as the same text: in double quotes if it has separators,
+/// quotes, or spaces at its ends. Throws InputError for a text with a line end, which no cell can
 /// hold.
 std::string MakeCell(std::string_view text);
 
@@ -16,7 +16,7 @@ class TableWriter {
  public:
   void Add(std::string_view text);
   void Add(double value);                     ///< with all digits; NaN is an empty cell
-  void AddFixed(double value, int decimals);  ///< likewise
+  void AddFixed(double value, int decimals);  ///< with so many decimals; NaN is an empty cell
   void EndRow();
 
   const std::string& text() const { return text_; }

@@ -18,7 +18,7 @@ bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 std::string Quote(std::string_view text) {
   constexpr std::size_t kLongest = 60;
   std::string_view begin = text.substr(0, kLongest);
-  // Not in the middle of a character.
+  // The text is not clipped in the middle of a character.
   const auto continues = [](char byte) {
     return (static_cast<unsigned char>(byte) & 0xc0) == 0x80;
   };

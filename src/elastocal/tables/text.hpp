@@ -7,18 +7,18 @@
 
 namespace elastocal {
 
-/// 'text' as it is shown in a message: in quotes, long text clipped, control characters as '?',
-/// what is not UTF-8 as U+FFFD.
+/// A text in the form in which a message shows it: in quotes, clipped if long, with control
+/// characters as '?' and bytes that are not UTF-8 as U+FFFD.
 std::string Quote(std::string_view text);
 
-/// "file:line: ", how messages about a line begin.
+/// "file:line: ", the beginning of messages about a line.
 std::string Place(const std::string& source, int line);
 
-/// The text without spaces, tabs and line ends around it.
+/// The text without spaces, tabs and line ends at its beginning and end.
 std::string_view Trim(std::string_view text);
 
-/// The whole text, spaces around it aside, as a finite number in the notation of C, whatever the
-/// locale; nothing where it is anything else ("1,5", "nan", "1e999", "2 3").
+/// The whole text as a finite number in the notation of C, whatever the locale; spaces around it
+/// are ignored. Nothing for any other text ("1,5", "nan", "1e999", "2 3").
 std::optional<double> ParseNumber(std::string_view text);
 
 /// Whether a cell of a table stands for a number that was not measured: it is empty, NaN or NULL,
@@ -28,7 +28,8 @@ bool IsGap(std::string_view cell);
 /// The shortest decimal text that reads back as the same double.
 std::string FormatNumber(double value);
 
-/// Adds such a text, or one with so many digits behind the point, to the end of another.
+/// Appends a number to `text`: as FormatNumber (AppendNumber), or with `decimals` digits after the
+/// point (AppendFixed).
 void AppendNumber(double value, std::string& text);
 void AppendFixed(double value, int decimals, std::string& text);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/math/kernels/dense_kernels.hpp"
 
-// Compiled once more for x86-64-v3, where Eigen has another name: else the linker would take one of
-// the two for both.
+// This file is compiled once more for x86-64-v3. Eigen has another name there; otherwise the linker
+// would use one of the two versions for both.
 #ifdef ELASTOCAL_FOR_V3
 #define Eigen EigenV3
 #endif
@@ -15,7 +15,7 @@
 namespace elastocal {
 namespace {
 
-constexpr Eigen::Index kColumns = 64;  // of a triangular matrix, taken at a time
+constexpr Eigen::Index kColumns = 64;  // columns of a triangular matrix that are taken at a time
 
 template <typename Matrix, typename Of>
 auto Map(const Of& of) {
@@ -33,8 +33,8 @@ void AddSquare(double factor, ConstMatrixView A, MatrixView S) {
   Mapped(S).selfadjointView<Eigen::Lower>().rankUpdate(Mapped(A), factor);
 }
 
-/// S = L L'. The inverse of L is lower triangular as well, and S^-1 = L^-T L^-1: what is zero of it
-/// takes no part, so that this costs half of what solving for the columns of the identity does.
+/// Inverts S = L L'. The inverse of L is lower triangular as well, and S^-1 = L^-T L^-1. The zeros
+/// of L^-1 are skipped, so that this costs half as much as solving for the columns of the identity.
 void Invert(ConstMatrixView S, MatrixView to) {
   const Eigen::LLT<Eigen::MatrixXd> factor(Mapped(S));
   auto inverse = Mapped(to);

@@ -5,7 +5,8 @@
 
 namespace elastocal {
 
-/// Matrices in columns. No type of Eigen stands here: it has another layout for other processors.
+/// Matrices stored by columns. They are not types of Eigen, whose layout differs between
+/// processors.
 struct ConstMatrixView {
   const double* data;
   std::ptrdiff_t rows, columns, stride;
@@ -15,7 +16,7 @@ struct MatrixView {
   std::ptrdiff_t rows, columns, stride;
 };
 
-/// What dense.hpp does, for one sort of processor. Results do not overlap what is read.
+/// The operations of dense.hpp for one sort of processor. Results must not overlap the inputs.
 struct DenseKernels {
   void (*multiply)(ConstMatrixView A, ConstMatrixView B, MatrixView C);  ///< C = A B
   void (*add_square)(double factor, ConstMatrixView A, MatrixView S);    ///< S += factor A A'
