@@ -63,7 +63,7 @@ struct CalibrationResult {
   /// Half width of a 95 % interval in standard deviations (Student's t; normal where the noise is
   /// given).
   double interval_factor = 1.96;
-  Posterior posterior;  ///< of estimated and unsupported parameters
+  Posterior posterior;  ///< posterior of the estimated and unsupported parameters
   std::vector<Correlation> correlations;
 
   ObservationMask used;           ///< observations that took part in the fit
@@ -89,7 +89,7 @@ struct CalibrationResult {
   bool settled = true;
   std::string message;
   int iterations = 0;                           ///< sum over all solves
-  double initial_cost = 0.0, final_cost = 0.0;  ///< of the last solve
+  double initial_cost = 0.0, final_cost = 0.0;  ///< cost at start and end of the last solve
   double solve_seconds = 0.0;
 };
 

@@ -13,7 +13,7 @@ namespace elastocal {
 /// A Gaussian on parameters of joints and legs that an earlier calibration of the robot gives, in
 /// SI units. For these parameters it replaces the prior about nominal, which it already contains.
 struct EarlierEstimate {
-  std::vector<std::string> names;  ///< of the parameters, each once
+  std::vector<std::string> names;  ///< names of the parameters, each once
   Eigen::VectorXd mean;            ///< deviations from nominal
   Eigen::MatrixXd covariance;      ///< positive definite
 

@@ -22,7 +22,7 @@ struct FitProblem {
   const ErrorModel& model;
   const Recording& recording;
   const CalibrationOptions& options;
-  std::vector<int> group;  ///< of each posture, see NoiseGroups
+  std::vector<int> group;  ///< noise group of each posture, see NoiseGroups
 };
 
 /// State of a fit: the estimated errors, the noise, the factors of the prior, and the uncertainty.
@@ -38,10 +38,10 @@ struct Fit {
   double degrees_of_freedom = 1.0;
   bool settled = true;  ///< noise and prior came to rest in all steps so far
 
-  Termination termination = Termination::kFailure;  ///< of the last solve
+  Termination termination = Termination::kFailure;  ///< how the last solve ended
   std::string message = {};
-  int iterations = 0;                           ///< of all solves so far
-  double initial_cost = 0.0, final_cost = 0.0;  ///< of the last solve
+  int iterations = 0;                           ///< sum over all solves so far
+  double initial_cost = 0.0, final_cost = 0.0;  ///< cost at start and end of the last solve
 };
 
 /// Initial state of a fit: errors `delta`, poses by registration, and the noise of each group by

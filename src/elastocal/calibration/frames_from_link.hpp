@@ -12,7 +12,7 @@ struct KnownGeometry {
   const ErrorModel& model;
   const Eigen::VectorXd& delta;
   const std::vector<int>& parameters;  ///< indices into the model's
-  const Eigen::MatrixXd& covariance;   ///< of these, in products of their SI units
+  const Eigen::MatrixXd& covariance;   ///< their covariance, in products of their SI units
 };
 
 /// As AssessFrames, but seen from the link `from` (0: the root link), over `postures` (one a row).

@@ -25,7 +25,7 @@ struct LinearStudy {
     Eigen::VectorXd to_metres;
     int markers = 0;  ///< Markers seen. For other observations: rows.
   };
-  std::vector<Posture> postures;  ///< of the recording
+  std::vector<Posture> postures;  ///< postures of the recording
   Eigen::MatrixXd other;  ///< information of the rows that belong to no posture: floor and prior
   Eigen::VectorXd other_gradient;
   int base = 0;  ///< number of unknowns of the calibration, which are the first columns
@@ -35,7 +35,7 @@ struct LinearStudy {
   std::vector<double> scale;
   std::vector<std::string> causes;         ///< names of the causes, in the order of `of_cause`
   std::vector<std::vector<int>> of_cause;  ///< columns of each cause, counted from `base`
-  double degrees_of_freedom = 1.0;         ///< of the noise
+  double degrees_of_freedom = 1.0;         ///< degrees of freedom of the noise
 
   int columns() const { return base + static_cast<int>(corrections.size()); }
 };

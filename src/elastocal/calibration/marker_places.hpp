@@ -14,7 +14,7 @@ namespace elastocal {
 struct MarkerMeasurement {
   std::string marker;
   Eigen::Vector3d p_link_marker = Eigen::Vector3d::Zero();  ///< in the frame of its link, m
-  double sd = 0.0;                                          ///< of each coordinate, m
+  double sd = 0.0;  ///< standard deviation of each coordinate, m
 };
 
 /// Adds measured places to the prior knowledge `known`: a normal distribution about each

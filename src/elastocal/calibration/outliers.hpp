@@ -10,7 +10,7 @@ namespace elastocal {
 /// An observation that has gone wrong: a marker that contradicts the other markers of its body, or
 /// a marker of a body that is further off than any error of a model.
 struct Outlier {
-  int posture = 0, marker = 0;  ///< of the recording
+  int posture = 0, marker = 0;  ///< indices in the recording
   double residual = 0.0;        ///< distance between measured and predicted position, m
   /// Mahalanobis distance from the position that the other markers of its body predict. For a body
   /// that is off as a whole: from the position that the model predicts.

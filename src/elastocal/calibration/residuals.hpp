@@ -19,8 +19,8 @@ namespace elastocal {
 /// Weight of a body in a posture, or of a posture's support constraint: 1, or less where it is
 /// further off than the noise explains (a likelihood with heavy tails).
 struct Weight {
-  double shared = 1.0;  ///< of what all markers of the body share; of a constraint
-  double own = 1.0;     ///< of the markers' own residuals, beside what they share
+  double shared = 1.0;  ///< weight of what all markers of the body share, or of a constraint
+  double own = 1.0;     ///< weight of the markers' own residuals, beside what they share
 };
 
 struct RobustWeights {
@@ -32,7 +32,7 @@ struct RobustWeights {
 struct ResidualInputs {
   const ErrorModel& model;
   const Recording& recording;
-  const std::vector<int>& group;  ///< of each posture, see NoiseGroups
+  const std::vector<int>& group;  ///< noise group of each posture, see NoiseGroups
   const Selection& selection;
   const std::vector<PostureLoads>& loads;  ///< by posture; empty: nothing is elastic
   const Prior& prior;

@@ -13,7 +13,7 @@ namespace elastocal {
 struct SoleDifference {
   std::string leg;
   double a = 0.0, b = 0.0, sd = 0.0;  ///< `sd` is that of the difference b - a
-  double half_width = 0.0;            ///< of the 95 % interval of b - a
+  double half_width = 0.0;            ///< half width of the 95 % interval of b - a
 
   bool significant() const { return std::abs(b - a) > half_width; }
 };

@@ -57,8 +57,8 @@ struct ParameterDrift {
 struct FleetFamily {
   std::vector<FamilyParameter> parameters;
   std::vector<OutOfFamily> out_of_family;  ///< significant ones, the smallest p first
-  std::vector<BatchDifference> batches;    ///< likewise
-  std::vector<ParameterDrift> drifts;      ///< likewise
+  std::vector<BatchDifference> batches;    ///< significant ones, likewise
+  std::vector<ParameterDrift> drifts;      ///< significant ones, likewise
   std::vector<std::string> workshop;  ///< robots that are out of family or have far larger errors
   double median_error = 0.0;          ///< median of urdf_error, m
 };

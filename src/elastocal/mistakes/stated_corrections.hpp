@@ -25,7 +25,7 @@ namespace elastocal {
 struct StatedCorrection {
   FaultKind kind = FaultKind::kJointGain;
   int coordinate = -1;  ///< coordinate in the robot tree; -1 for a scale
-  /// Of the tree, where `coordinate` is one of its motors; -1: it is an entry of q.
+  /// Linkage of the tree of which `coordinate` is a motor; -1: it is an entry of q.
   int linkage = -1;
   std::string joint = {};  ///< empty for a scale
   std::string trial = {};  ///< empty: all

@@ -29,8 +29,8 @@ struct ObservationFit {
   Eigen::MatrixXd covariance;
   std::vector<int> entry_of_unknown, entry_of_quantity, entry_of_effect;
   double effective_parameters = 0.0;  ///< count of numbers that the observations determine
-  double degrees_of_freedom = 1.0;    ///< of the uncertainty: numbers left for the noise
-  bool settled = false;               ///< the variances came to rest
+  double degrees_of_freedom = 1.0;  ///< numbers left for the noise, on which the uncertainty rests
+  bool settled = false;             ///< the variances came to rest
   Termination termination = Termination::kFailure;
   int iterations = 0;
 };

@@ -96,7 +96,7 @@ struct TrackedBodySetup {
   Transform T_link = Transform::Identity();
   Tracker tracker = {};
   double mounting_sd_m = 0.0, mounting_sd_rad = 0.0;  ///< 0: unknown (1 m, 1 rad)
-  double position_sd = 1e-3, rotation_sd = 2e-3;      ///< of the noise, m and rad
+  double position_sd = 1e-3, rotation_sd = 2e-3;      ///< noise, m and rad
   /// Covariance of position [m] and rotation vector [rad] in the order and axes of TrackedBody, up
   /// to a factor, which the data decide. Empty: position and rotation have a standard deviation
   /// each.

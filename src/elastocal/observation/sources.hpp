@@ -15,9 +15,9 @@ enum class SourceUnit { kMetre, kRadian, kAcceleration, kPixel, kNone };
 /// deviations of robot and quantities from nominal, by kind.
 struct Source {
   enum class Role {
-    kNoise,  ///< of measurements: the data determine its size
-    kPrior,  ///< of estimated values: likewise (variance components)
-    kFixed,  ///< of estimated values: the standard deviation is fixed
+    kNoise,  ///< noise of measurements, whose size the data determine
+    kPrior,  ///< spread of estimated values, likewise (variance components)
+    kFixed,  ///< spread of estimated values with a fixed standard deviation
   };
   std::string name;
   SourceUnit unit = SourceUnit::kNone;

@@ -12,8 +12,8 @@ namespace elastocal {
 
 /// The variable on which a cause depends.
 enum class CauseVariable {
-  kPosition,  ///< of a joint, rad or m
-  kLoad,      ///< of a joint, N.m or N
+  kPosition,  ///< position of a joint, rad or m
+  kLoad,      ///< load on a joint, N.m or N
   kApproach,  ///< direction of a joint's last motion, -1 or 1
   kMoment,    ///< moment of the weight on the root link, N.m
   kTime,      ///< h

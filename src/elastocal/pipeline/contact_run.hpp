@@ -79,7 +79,7 @@ struct ContactRun {
   /// Gain of the calibrated robot on held-out (else the same) postures, see GainInSds.
   double gain_in_sds = 0.0;
   CalibrationResult result;                  ///< the robot's parameters
-  std::optional<CalibrationResult> in_urdf;  ///< those of `geometric`, which the URDF contains
+  std::optional<CalibrationResult> in_urdf;  ///< parameters of `geometric`, which the URDF contains
   Verdict verdict;
   std::optional<CalibratedUrdf> urdf;  ///< empty where the verdict has objections
   ZeroOffsets zero_offsets = ZeroOffsets::kOrigin;

@@ -123,7 +123,7 @@ std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& mo
 struct MotionFiles {
   std::filesystem::path motion, margins;
   std::filesystem::path trajectory = {};  ///< empty: none
-  RosVersion ros = RosVersion::kRos2;     ///< of the trajectory's stamps
+  RosVersion ros = RosVersion::kRos2;     ///< version of ROS for the trajectory's stamps
   std::vector<std::filesystem::path> chains = {};
 
   explicit MotionFiles(const std::filesystem::path& output);

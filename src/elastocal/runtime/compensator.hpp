@@ -21,9 +21,9 @@ struct CompensatorOptions {
   double period_s = 1e-3;
   /// Limits on corrections, so that no input gives a dangerous command. Larger values are cut and
   /// reported.
-  double largest_turn_rad = 0.05;        ///< of each elastic rotation
-  double largest_shift_m = 0.02;         ///< of each elastic translation
-  double largest_correction_rad = 0.25;  ///< of a joint (m for a prismatic joint) from nominal
+  double largest_turn_rad = 0.05;        ///< limit of each elastic rotation
+  double largest_shift_m = 0.02;         ///< limit of each elastic translation
+  double largest_correction_rad = 0.25;  ///< limit for a joint (m if prismatic) from nominal
 };
 
 /// The standing feet: bit i for foot i of the model. 0: the root link is held.

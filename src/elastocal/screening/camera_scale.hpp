@@ -13,7 +13,7 @@ namespace elastocal {
 struct CommonScale {
   double size = 0.0;  ///< factor minus 1
   double sd = 0.0;
-  /// Of `sd`, by the number of lengths that determine how far single lengths err.
+  /// Degrees of freedom of `sd`: number of lengths that determine how far single lengths err.
   double degrees_of_freedom = 1.0;
 };
 

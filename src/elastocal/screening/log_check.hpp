@@ -19,9 +19,9 @@ enum class LogContradiction {
 /// A mistake in the joint log or a posture table that the markers show.
 struct LogSuspicion {
   LogContradiction kind = LogContradiction::kSign;
-  int coordinate = 0;  ///< of the robot tree
+  int coordinate = 0;  ///< coordinate in the robot tree
   int other = -1;      ///< coordinate with which it is exchanged
-  /// Of the tree, where `coordinate` and `other` are its motors; -1: they are entries of q.
+  /// Linkage of the tree whose motors `coordinate` and `other` are; -1: they are entries of q.
   int linkage = -1;
   std::vector<int> postures = {};  ///< postures with the mistake, ascending
   /// Median absolute difference between PositionsByMarkers and the log there, rad or m; for a

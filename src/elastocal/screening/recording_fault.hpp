@@ -17,7 +17,7 @@ enum class FaultKind {
   kJointDrift,
   /// Positions are ahead of the true ones by a share of the move from the posture before.
   kUnfinished,
-  kJointLag,     ///< of motions: positions are those of an earlier time
+  kJointLag,     ///< in motions: positions are those of an earlier time
   kCameraScale,  ///< positions by the cameras in one trial are a multiple of the true ones
   kCameraAxis,   ///< coordinates along one of the cameras' axes are a multiple, in all postures
   /// Coordinates along one axis are off by a multiple of those along another, in all postures.
@@ -36,11 +36,11 @@ struct RecordingFault {
   double size = 0.0;
   double sd = 0.0;     ///< standard deviation of `size`, by the scatter of the postures
   double share = 0.0;  ///< share of the sum of squared residuals that it explains
-  /// Of the tree, where `coordinate` is one of its motors; -1: it is an entry of q.
+  /// Linkage of the tree of which `coordinate` is a motor; -1: it is an entry of q.
   int linkage = -1;
   /// In a table, or of a drift: the posture after the last one with it; 0: to the end.
   int end = 0;
-  int axis = -1;     ///< of the cameras' frame: 0, 1 or 2
+  int axis = -1;     ///< axis of the cameras' frame: 0, 1 or 2
   int by_axis = -1;  ///< of a shear: axis whose coordinate displaces those along `axis`
 };
 

@@ -31,7 +31,8 @@ struct ContradictoryTorque {
 /// more than masses of links, friction and deflection explain. Empty where the robot description
 /// has no masses. A single sensor contradicts by
 ///
-/// - a slope below 0.5 or above 2 (1.5 if the sensors next to it on its limb follow statics);
+/// - a slope below 0.5 or above 2 (1.5 if the sensors next to it on its limb follow statics without
+///   such a factor);
 /// - a bias of more than 10 N.m (N) and more than a quarter of the largest torque;
 /// - a correlation below a half;
 /// - another sensor with which it is exchanged: the two fit each other's statics far better than

@@ -14,7 +14,7 @@ namespace elastocal {
 /// can be compared.
 struct ParameterEstimate {
   std::string name;       ///< name, whose owner is told by OwnerName
-  std::string unit;       ///< of value and sd, SI: "rad", "m", ...
+  std::string unit;       ///< SI unit of value and sd: "rad", "m", ...
   bool external = false;  ///< belongs to the experiment, not to the robot; see IsExternal
   ParameterStatus status = ParameterStatus::kEstimated;
   double value = 0.0;  ///< deviation from nominal

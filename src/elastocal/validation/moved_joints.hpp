@@ -37,7 +37,7 @@ struct JointSuspect {
   /// Smallest change of its zero that would be seen (SmallestChange), rad or m.
   double smallest_seen = 0.0;
   bool zero_alone = false;               ///< a change of the zero alone explains the data best
-  std::vector<ParameterChange> changes;  ///< of its zero alone, or of all its parameters
+  std::vector<ParameterChange> changes;  ///< change of its zero alone, or of all its parameters
 
   bool told() const { return test.parameters > 0; }
 };

@@ -32,7 +32,7 @@ Differences GivenNone(const Differences& differences, const std::vector<int>& wh
 struct DifferenceTest {
   double statistic = 0.0;  ///< NaN without covariance
   int parameters = 0;
-  double degrees_of_freedom = 0.0;  ///< of the denominator
+  double degrees_of_freedom = 0.0;  ///< degrees of freedom of the denominator
   double p = 1.0;                   ///< probability of at least this statistic without a change
 };
 
