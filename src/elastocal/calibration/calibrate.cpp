@@ -18,9 +18,9 @@ namespace elastocal {
 namespace {
 
 constexpr std::size_t kMaxVerdicts = 5;
-constexpr int kFewUpdates = 2;  // of the noise, for a start
-// Where only the waist and the markers are estimated: of a robot with wrong joints, which no noise
-// describes, so that it would hardly come to rest.
+constexpr int kFewUpdates = 2;  // updates of the noise when only a start is needed
+// Updates of the noise where only waist and markers are estimated. The joints are then wrong, which
+// no noise describes, so that the noise would hardly come to rest.
 constexpr int kExternalUpdates = 15;
 
 bool IsEstimated(ParameterKind parameter, ModelKind kind) {
@@ -31,9 +31,9 @@ bool IsEstimated(ParameterKind parameter, ModelKind kind) {
           (parameter == ParameterKind::kTheta || parameter == ParameterKind::kMotorZero));
 }
 
-/// What is estimated: all parameters but those held, also those that cannot be told from others:
-/// of these, the prior makes the smallest combination that explains the data. Where the waist
-/// moves, it has a pose in each posture instead of T0.
+/// Parameters that are estimated: all of the kind that are not held, also those that cannot be told
+/// from others. Of these, the prior selects the smallest combination that explains the data. Where
+/// the waist moves, it has a pose in each posture instead of T0.
 std::vector<int> OfKind(const ErrorModel& model, const BaseParameters& base, ModelKind kind,
                         bool waist_moves) {
   std::vector<int> free;
@@ -55,7 +55,8 @@ Selection Without(const ErrorModel& model, const Recording& recording,
   return Select(model, recording, std::move(markers), std::move(tied));
 }
 
-/// Weights of the same bodies in another selection; 1 of what took no part before.
+/// Transfers weights to another selection, by posture and body. A body that took no part before has
+/// weight 1.
 RobustWeights WeightsIn(const Selection& after, const Selection& before,
                         const RobustWeights& weights) {
   if (weights.bodies.size() != before.bodies.size()) return {};
@@ -82,7 +83,7 @@ bool Same(const OutlierVerdict& a, const OutlierVerdict& b) {
              [](const LooseFooting& x, const LooseFooting& y) { return x.posture == y.posture; });
 }
 
-/// Adds what `others` names.
+/// Adds to `into` the outliers and loose footings that only `others` names.
 void Join(OutlierVerdict& into, const OutlierVerdict& others) {
   const auto add = [](auto& to, const auto& from, const auto& place) {
     for (const auto& found : from) {
@@ -99,7 +100,8 @@ void Join(OutlierVerdict& into, const OutlierVerdict& others) {
 
 struct EquationCount {
   Eigen::Index equations = 0;
-  /// That could be identified, and are not told by an earlier calibration.
+  /// Identifiable parameters that no earlier calibration tells, and six for each pose of waist or
+  /// footing.
   Eigen::Index unknowns = 0;
   bool enough() const { return equations >= unknowns; }
 };
@@ -122,8 +124,8 @@ EquationCount CountEquations(const FitProblem& problem, const Placement& placeme
   return count;
 }
 
-/// The prior makes any number of equations enough; fewer than what could be identified are refused
-/// all the same, unless an earlier calibration tells it.
+/// Refuses a recording with fewer equations than identifiable unknowns, unless an earlier
+/// calibration tells them. (With the prior, any number of equations has a solution.)
 void CheckEquations(const FitProblem& problem, const Placement& placement,
                     const Selection& selection, const BaseParameters& base,
                     const std::vector<int>& free) {
@@ -153,7 +155,7 @@ void FillStatus(const BaseParameters& base, const CalibrationOptions& options,
   }
 }
 
-/// Root mean square of the groups' over the observations.
+/// Root mean square, over the used observations, of the groups' standard deviations.
 double PooledMarkerSd(const ObservationMask& used, const std::vector<int>& group,
                       const Noise& noise) {
   double squares = 0.0;
@@ -190,16 +192,17 @@ void FillResult(const BaseParameters& base, const CalibrationOptions& options, F
   result.posterior = std::move(fit.posterior);
 }
 
-/// Outliers of single moments of a motion, by the noise that each has by itself.
+/// Judges outliers with the noise of single moments: correlations within motions are ignored.
 OutlierVerdict JudgeOutliers(const FitProblem& problem, const Selection& selection,
                              const std::vector<int>& free, Fit fit) {
   fit.noise.motion.clear();
   return FindOutliers(problem, selection, free, fit, problem.options.outlier_probability);
 }
 
-/// Fits without the outliers of a verdict and judges anew, until the verdict stands. An observation
-/// at the edge may be left out and taken back by turns: it stays out then. Where too few equations
-/// would be left, all are kept: so many are no outliers, and what is wrong is not known yet.
+/// Fits without the outliers of a verdict and judges anew, until the verdict no longer changes. An
+/// observation at the limit may be left out and taken back in turns; it then stays out. Where too
+/// few equations would be left, all observations are kept: so many cannot all be outliers, and the
+/// true cause is not known yet.
 OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& base,
                               const std::vector<int>& free, OutlierVerdict verdict,
                               Selection& selection, Fit& fit, bool& too_many) {
@@ -221,7 +224,7 @@ OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& b
     if (problem.options.outliers == OutlierPolicy::kKeep || Same(next, verdict)) return next;
     if (earlier.size() == kMaxVerdicts) {
       fit.settled = false;
-      return verdict;  // the one that the fit was made with
+      return verdict;  // the verdict with which the fit was made
     }
     if (std::any_of(earlier.begin(), earlier.end(),
                     [&](const OutlierVerdict& before) { return Same(next, before); })) {
@@ -234,7 +237,7 @@ OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& b
   }
 }
 
-/// Steps 2 to 4, from an estimate of waist and markers.
+/// Steps 2 and 3 of Calibrate, starting from a fit of waist and markers.
 void EstimateAll(const FitProblem& problem, const BaseParameters& base,
                  const std::vector<int>& free, const Selection* fixed, Fit fit,
                  CalibrationResult& result) {
@@ -268,7 +271,7 @@ void EstimateAll(const FitProblem& problem, const BaseParameters& base,
   FillResult(base, problem.options, std::move(fit), result);
 }
 
-/// Step 1, and the others: with the joints' errors as in `delta` where they are not estimated.
+/// All steps of Calibrate. Parameters that are not estimated keep their value in `delta`.
 void Estimate(const ErrorModel& model, const Recording& recording, const BaseParameters& base,
               const CalibrationOptions& options, const Selection* fixed,
               const Eigen::VectorXd& delta, CalibrationResult& result) {

@@ -10,8 +10,10 @@ namespace elastocal {
 namespace {
 
 constexpr int kWideningRounds = 4;
-constexpr double kMostVarianceWidening = 100.0;  // see MostWidening
-constexpr double kLeastInformation = 1e-6;       // of a correction of typical size
+// Of the variance; the square of what MostWidening says of corrections.
+constexpr double kMostVarianceWidening = 100.0;
+// Added to the information of a correction, in units of its typical size.
+constexpr double kLeastInformation = 1e-6;
 
 std::vector<int> BaseWith(const LinearStudy& study, const std::vector<int>& causes) {
   std::vector<int> columns(static_cast<std::size_t>(study.base));

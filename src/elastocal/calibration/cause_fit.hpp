@@ -9,40 +9,43 @@
 
 namespace elastocal {
 
-/// Columns of causes in a study.
+/// Columns of the study that belong to the given causes.
 std::vector<int> CauseColumns(const LinearStudy& study, const std::vector<int>& causes);
 
-/// Normal equations in all columns of a study, over some of its postures.
+/// Normal equations in all columns of a study, summed over some of its postures.
 struct StudySums {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;
 
   explicit StudySums(const LinearStudy& study)
       : information(study.other), gradient(study.other_gradient) {}
-  /// `sign`: -1 takes the posture out again.
+  /// Adds a posture with `sign` 1; takes it out again with -1.
   void Add(const LinearStudy::Posture& posture, double sign);
 };
 
-/// The fit of the base, with the causes taken so far, to what is in the sums, and the columns of
-/// all others beside it.
+/// Least-squares fit of the base columns and of the causes taken so far, and what the other columns
+/// could still explain beside it.
 struct BaseFit {
   std::vector<int> columns, others;
-  Eigen::VectorXd step;       ///< of the base
-  Eigen::MatrixXd explained;  ///< base x others: what the base makes of each
-  Eigen::MatrixXd left;       ///< information of the others beside the base
-  Eigen::VectorXd gradient;   ///< of the others beside the base
+  Eigen::VectorXd step;  ///< solution for `columns`
+  /// `columns` x `others`: coefficients by which the base columns reproduce each other column.
+  Eigen::MatrixXd explained;
+  Eigen::MatrixXd left;      ///< information of the others after the base columns are eliminated
+  Eigen::VectorXd gradient;  ///< gradient of the others at the solution
 
   BaseFit(const LinearStudy& study, const StudySums& sums, const std::vector<int>& taken);
-  /// Where the columns of a cause stand among the others.
+  /// Places of a cause's columns in `others`.
   std::vector<int> Positions(const LinearStudy& study, int cause) const;
+  /// Residual of a posture after the fit.
   Eigen::VectorXd Residual(const LinearStudy::Posture& posture) const;
+  /// The other columns of a posture, less what the base columns reproduce of them.
   Eigen::MatrixXd Beside(const LinearStudy::Posture& posture) const;
 };
 
-/// A cause fitted beside the base: its prior is widened as far as its size asks for, like that of
-/// the calibration (EstimatePriorScale).
+/// Fit of one cause beside the base. Its prior is widened as far as the size of the cause requires,
+/// by at most 10 (standard deviation), as in the calibration (EstimatePriorScale).
 struct CauseFit {
-  Eigen::MatrixXd information;  ///< of the data alone
+  Eigen::MatrixXd information;  ///< information of the data alone, without the prior
   Eigen::VectorXd step;
   Eigen::MatrixXd covariance;
 };

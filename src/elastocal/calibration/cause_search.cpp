@@ -21,16 +21,15 @@ double ErrorOf(const LinearStudy::Posture& posture, const Eigen::VectorXd& resid
                    std::max(1, posture.markers));
 }
 
-/// Whether a mean gain over so many postures is a reason to change the robot: its 95 % interval is
-/// above zero; or, where chance may have made a part of it, it is above its standard error and
-/// matters beside the error that it is gained of.
+/// Whether a mean gain over `postures` postures justifies a change of the robot: its 95 % interval
+/// is above zero, or it exceeds both its standard error and 5 % of `error`.
 bool IsWorth(double gain, double sd, double error, std::size_t postures) {
   constexpr double kMatters = 0.05;
   const double freedom = std::max(1.0, static_cast<double>(postures) - 1.0);
   return gain > StudentQuantile(0.975, freedom) * sd || (gain > sd && gain > kMatters * error);
 }
 
-/// Postures, dealt to folds at random.
+/// Divides the postures into folds at random.
 std::vector<std::vector<int>> Deal(std::vector<int> postures, int folds, Random& random) {
   for (std::size_t i = postures.size() - 1; i > 0; --i) {
     std::swap(postures[i],
@@ -43,7 +42,7 @@ std::vector<std::vector<int>> Deal(std::vector<int> postures, int folds, Random&
   return dealt;
 }
 
-/// The search over some of the postures.
+/// Forward search for causes over some of the postures.
 class Search {
  public:
   Search(const LinearStudy& study, const CauseSearchOptions& options, std::vector<int> postures,
@@ -54,7 +53,7 @@ class Search {
         sums_(sums),
         seed_(seed) {}
 
-  /// All causes beside those that are taken.
+  /// Tests every cause that is not taken, beside those that are.
   std::vector<CauseFinding> Findings(const std::vector<int>& taken) {
     const BaseFit fit(study_, sums_, taken);
     PlaceBeside(fit);
@@ -92,7 +91,8 @@ class Search {
     return taken;
   }
 
-  double error() const { return error_; }  ///< of the base last tried, root mean square
+  /// Root mean square held-out error of the base in the last call of Findings.
+  double error() const { return error_; }
 
  private:
   bool Helps(const CauseFinding& finding) const {
@@ -104,7 +104,7 @@ class Search {
   /// of 20.
   std::vector<std::string> RivalsOf(const CauseFinding& best,
                                     const std::vector<CauseFinding>& findings) const {
-    constexpr double kAlike = 6.0;  // of twice the logarithm
+    constexpr double kAlike = 6.0;  // limit of the difference of twice the log likelihood
     const auto explained = [](const CauseFinding& finding) {
       return finding.score * static_cast<double>(finding.parameters.size());
     };
@@ -143,7 +143,8 @@ class Search {
     return finding;
   }
 
-  /// The columns of all causes in each posture, beside the base, and what the base leaves.
+  /// Computes for each posture the columns of the causes beside the base, and the residual that the
+  /// base leaves.
   void PlaceBeside(const BaseFit& fit) {
     beside_.resize(study_.postures.size());
     left_.resize(study_.postures.size());
@@ -154,8 +155,8 @@ class Search {
     }
   }
 
-  /// The scatter of the postures' scores, the cause being fitted, over what the noise model
-  /// expects, at least 1.
+  /// Ratio of the scatter of the postures' scores, after the cause is fitted, to what the noise
+  /// model expects; at least 1.
   double Inflation(const std::vector<int>& at, const Eigen::VectorXd& step,
                    const Eigen::LLT<Eigen::MatrixXd>& factor) const {
     double found = 0.0;
@@ -207,7 +208,7 @@ class Search {
     }
   }
 
-  /// Held-out errors with each cause, and without.
+  /// Computes the held-out errors without any further cause and with each.
   void HeldOut(const std::vector<int>& taken, std::vector<CauseFinding>& findings) {
     const auto rows = static_cast<Eigen::Index>(study_.postures.size());
     const auto count = static_cast<Eigen::Index>(findings.size());
@@ -274,13 +275,13 @@ class Search {
   std::vector<int> postures_;
   const StudySums& sums_;
   std::uint64_t seed_;
-  std::vector<int> causes_;              // of the findings in hand
+  std::vector<int> causes_;              // cause of each finding, by index in the study
   std::vector<Eigen::MatrixXd> beside_;  // by posture
   std::vector<Eigen::VectorXd> left_;    // by posture
   double error_ = 0.0;
 };
 
-/// The search repeated without each fold, judged on it.
+/// Repeats the search without each fold and judges its choice on that fold.
 void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
                  const std::vector<int>& postures, const StudySums& all, CauseSearch& result) {
   Random random(options.seed);

@@ -8,9 +8,10 @@
 
 namespace elastocal {
 
-/// Hides the markers of the feet in postures on several feet (NaN: not seen). There the legs close
-/// a chain, and how they share the load and give way is not known: what these markers show is not
-/// what the model of open chains says of them. They have helped to find the clock.
+/// Hides the markers on the feet in postures on several feet (sets them to NaN, not seen). There
+/// the legs form a closed chain whose distribution of load and deflection is unknown, and the model
+/// of open chains does not describe these markers. Call it after the clocks are synchronised, which
+/// needs these markers.
 void HideClosedChains(const RobotTree& tree, const std::vector<Marker>& markers,
                       Recording& recording);
 

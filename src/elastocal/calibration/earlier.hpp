@@ -10,31 +10,30 @@
 
 namespace elastocal {
 
-/// What is known of a robot from an earlier calibration: a Gaussian on parameters of its joints and
-/// legs, in SI units. For these parameters it takes the place of the prior around nominal, which is
-/// contained in it.
+/// A Gaussian on parameters of joints and legs that an earlier calibration of the robot gives, in
+/// SI units. For these parameters it replaces the prior about nominal, which it already contains.
 struct EarlierEstimate {
-  std::vector<std::string> names;  ///< of the parameters, each once
+  std::vector<std::string> names;  ///< names of the parameters, each once
   Eigen::VectorXd mean;            ///< deviations from nominal
   Eigen::MatrixXd covariance;      ///< positive definite
 
   bool empty() const { return names.empty(); }
 };
 
-/// The part of an earlier estimate that is about some parameters of a model; the others are
-/// integrated out.
+/// The marginal of an earlier estimate for a selection of a model's parameters.
 struct EarlierPart {
-  std::vector<int> positions;  ///< of the known parameters among `parameters`, ascending
+  /// Which entries of `parameters` the earlier estimate knows, ascending.
+  std::vector<int> positions;
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;
 
-  /// Inverse of the covariance. Throws InputError where it is not positive definite.
+  /// Inverse of the covariance. Throws InputError where the covariance is not positive definite.
   Eigen::MatrixXd Information() const;
-  /// W with W'W = Information().
+  /// Matrix W with W'W = Information(). Throws as Information().
   Eigen::MatrixXd Whitening() const;
 };
 
-/// `parameters`: indices into the model's.
+/// `parameters` holds indices of the model's parameters.
 EarlierPart PartOf(const EarlierEstimate& earlier, const ErrorModel& model,
                    const std::vector<int>& parameters);
 

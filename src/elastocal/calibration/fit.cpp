@@ -16,22 +16,25 @@
 namespace elastocal {
 namespace {
 
-// When a fit has come to rest. Standard deviations are never known to a hundredth, and a fit that
-// only looks for gross errors needs less.
-constexpr double kStepTolerance = 1e-2;      // of an unknown's standard deviation, on average
-constexpr double kVarianceTolerance = 1e-2;  // relative, of a standard deviation, by its share
+// Tolerances within which a fit has come to rest. Standard deviations are never known to 1 %, and a
+// fit that only looks for gross errors needs less.
+constexpr double kStepTolerance = 1e-2;  // of an unknown's standard deviation, root mean square
+// Relative change of a standard deviation, weighted by its share.
+constexpr double kVarianceTolerance = 1e-2;
 constexpr double kWeightTolerance = 1e-2;
-constexpr double kMotionTolerance = 0.1;  // relative, of samples: where their sum ends is uncertain
+// Relative change of samples_each, whose sum ends at an uncertain lag.
+constexpr double kMotionTolerance = 0.1;
 constexpr int kMotionRounds = 5;
-constexpr double kRoughly = 10.0;    // times these
-constexpr int kRoughIterations = 5;  // of a solve whose weights will change anyway
-constexpr int kMaxSolves = 6;  // for the last digits, where the iterations of one do not suffice
+constexpr double kRoughly = 10.0;    // factor on these tolerances in a robust fit
+constexpr int kRoughIterations = 5;  // iterations of a solve whose weights will change anyway
+constexpr int kMaxSolves = 6;        // solves in Polish, where the iterations of one do not suffice
 constexpr int kMaxPolishing = 20;
-constexpr double kLoadTolerance = 1e-10;  // of parameters in units of their scale
-constexpr double kSlow = 0.3;             // of the step before
-constexpr double kWorse = 2.0;            // times the least cost: the steps lead away
+constexpr double kLoadTolerance = 1e-10;  // of parameters, in units of their scale
+// Relative to the step before: slower convergence than this needs a new linearisation.
+constexpr double kSlow = 0.3;
+constexpr double kWorse = 2.0;  // times the least cost: larger costs mean that the steps lead away
 
-/// Whether any elastic parameter is estimated or known: else loads do not matter.
+/// Whether an elastic parameter is estimated or nonzero; otherwise loads have no effect.
 bool IsElasticFit(const ErrorModel& model, const std::vector<int>& free,
                   const Eigen::VectorXd& delta) {
   const auto elastic = [&](int i) { return IsElastic(model.parameters[i].kind); };
@@ -59,7 +62,8 @@ void SolveOnce(const FitProblem& problem, const Selection& selection, const std:
   fit.final_cost = solved.final_cost;
 }
 
-/// The largest relative change of a source's standard deviation, by how much it matters.
+/// The largest relative change of a source's standard deviation, weighted by the source's share in
+/// its rows.
 double NoiseChange(const Noise& before, const Noise& after, const VarianceComponents& components) {
   double change = 0.0;
   for (int g = 0; g < before.group_count(); ++g) {
@@ -94,7 +98,7 @@ double WeightChange(const RobustWeights& before, const RobustWeights& after) {
   return change;
 }
 
-/// The largest relative change of what a moment of a motion counts.
+/// The largest relative change of `samples_each` over groups.
 double MotionChange(const Noise& before, const Noise& after) {
   if (before.motion.size() != after.motion.size()) return 1.0;
   const auto change = [](const Autocorrelation& a, const Autocorrelation& b) {
@@ -108,10 +112,10 @@ double MotionChange(const Noise& before, const Noise& after) {
   return largest;
 }
 
-/// One Gauss-Newton step and, from the same linearisation, noise, weights and prior scale: they
-/// converge together, instead of the one waiting for the other. Whether they have. What the fit
-/// explains of each row, by residual block, takes most of the time: where it is not empty, it is
-/// taken as it is from the update before.
+/// Makes one Gauss-Newton step and estimates noise, weights and prior scale from the same
+/// linearisation, so that they converge together. Returns whether all have come to rest.
+/// `explained` (what the fit explains of each row, by residual block) takes most of the time: where
+/// it is not empty, the values of the update before are used again.
 bool UpdateByStep(const FitProblem& problem, const Selection& selection,
                   const std::vector<int>& free, Robustness robustness, ExplainedRows& explained,
                   Fit& fit) {
@@ -160,8 +164,8 @@ bool UpdateByStep(const FitProblem& problem, const Selection& selection,
   return settled;
 }
 
-/// Of a fit that has settled: by its residuals, how errors are correlated in motions. Whether that
-/// is much the same as before. (Sooner, noise and correlation would swing.)
+/// Estimates the correlation within motions from the residuals of a settled fit (earlier, noise and
+/// correlation would oscillate). Returns whether it has hardly changed.
 bool UpdateMotion(const FitProblem& problem, const Selection& selection,
                   const std::vector<int>& free, const ExplainedRows& explained, Fit& fit) {
   if (!HasMotion(problem.recording)) return true;
@@ -174,10 +178,10 @@ bool UpdateMotion(const FitProblem& problem, const Selection& selection,
   return same;
 }
 
-/// From a solution for loads as they were: steps after each of which the loads follow it. The
-/// information hardly changes any more, so that one linearisation serves them all, unless they fall
-/// slowly. Where one leads away, the solution is the one before it: noise that came out far too
-/// small leaves the information nearly singular.
+/// Starting from a solution for fixed loads, makes steps after each of which the loads follow the
+/// solution. One linearisation serves all steps, because the information hardly changes, unless the
+/// steps shrink slowly. If a step leads away, the solution before it is kept: noise that is
+/// estimated far too small makes the information nearly singular.
 void FollowLoads(const FitProblem& problem, const Selection& selection,
                  const std::vector<int>& free, Fit& fit) {
   FitResiduals residuals(problem, selection, free, fit);
@@ -291,7 +295,8 @@ Fit FitParameters(const FitProblem& problem, const Selection& selection,
   int rounds = 0;  // of correlations in motions
   const int most = std::min(updates, problem.options.max_iterations);
   for (int update = 0; update < most && !settled; ++update) {
-    const bool anew = update % 2 == 0;  // with the same for longer, the noise would swing
+    // More updates with the same `explained` would make the noise oscillate.
+    const bool anew = update % 2 == 0;
     if (anew) explained = {};
     settled = UpdateByStep(problem, selection, free, robustness, explained, fit) &&
               (anew || robustness == Robustness::kMedians);

@@ -14,43 +14,44 @@
 
 namespace elastocal {
 
-inline constexpr int kMaxUpdates = 100;  ///< of noise and prior before a fit counts as unsettled
+/// Updates of noise and prior after which a fit counts as not settled.
+inline constexpr int kMaxUpdates = 100;
 
-/// What stays the same while parameters are fitted in several steps. Keeps references.
+/// What is the same in all steps of a fit. Keeps references.
 struct FitProblem {
   const ErrorModel& model;
   const Recording& recording;
   const CalibrationOptions& options;
-  std::vector<int> group;  ///< of each posture, see NoiseGroups
+  std::vector<int> group;  ///< noise group of each posture, see NoiseGroups
 };
 
-/// Estimated errors with the noise that they leave, how far they go beyond the prior, and their
-/// uncertainty.
+/// State of a fit: the estimated errors, the noise, the factors of the prior, and the uncertainty.
 struct Fit {
   Eigen::VectorXd delta;  ///< one a parameter of the model, SI
   Placement placement = {};
   Noise noise = {};
-  RobustWeights weights = {};  ///< of bodies and constraints of the selection last fitted to
+  RobustWeights weights = {};  ///< weights in the selection that was fitted last
   PriorScale prior_scale = {};
-  Posterior posterior = {};         ///< of the fitted parameters
-  double degrees_of_freedom = 1.0;  ///< of their uncertainty, at least 1; infinite: the noise is
-                                    ///< given (Satterthwaite)
-  bool settled = true;              ///< whether noise and prior came to rest, in all steps so far
+  Posterior posterior = {};  ///< posterior of the fitted parameters
+  /// Degrees of freedom of the uncertainty (Satterthwaite), at least 1; infinite where the noise is
+  /// given.
+  double degrees_of_freedom = 1.0;
+  bool settled = true;  ///< noise and prior came to rest in all steps so far
 
-  Termination termination = Termination::kFailure;  ///< of the last solve
+  Termination termination = Termination::kFailure;  ///< how the last solve ended
   std::string message = {};
-  int iterations = 0;                           ///< of all solves so far
-  double initial_cost = 0.0, final_cost = 0.0;  ///< of the last solve
+  int iterations = 0;                           ///< sum over all solves so far
+  double initial_cost = 0.0, final_cost = 0.0;  ///< cost at start and end of the last solve
 };
 
-/// A fit that has not begun: nothing known but `delta`, the first guess of where the robot stands,
-/// and the noise by the median residual there.
+/// Initial state of a fit: errors `delta`, poses by registration, and the noise of each group by
+/// the median residual.
 Fit StartFit(const FitProblem& problem, const Selection& selection, const Eigen::VectorXd& delta);
 
-/// The prior as wide as the fit has it.
+/// The prior, widened by the fit's factors.
 Prior WidenedPrior(const FitProblem& problem, const Fit& fit);
 
-/// The residuals of a fit as it stands, with all that they refer to.
+/// The residuals of a fit in its present state, with the objects that they refer to.
 struct FitResiduals {
   FitResiduals(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,
                const Fit& fit);
@@ -68,35 +69,38 @@ struct FitResiduals {
 /// How the noise is found.
 enum class Robustness {
   kMoments,  ///< by squares (restricted maximum likelihood)
-  kMedians,  ///< by medians, which gross errors cannot move; and single markers count less, too
+  kMedians,  ///< by medians, which gross errors do not affect; single markers are weighted, too
 };
 
-/// Fits the parameters `free` to the observations in `selection`, from `start`; the others stay as
-/// there. Noise, weights and prior follow from the solution and weigh in it, so it is a fixed-point
-/// iteration: a Gauss-Newton step, then, from the same linearisation, noise (that of a marker
-/// coordinate unless it is given), weights and the width of the prior (if asked to), and again. The
-/// loads that bend the robot follow along.
+/// Fits the parameters `free` to the observations in `selection`, starting from `start`; all other
+/// parameters keep their value in `start`. Noise, weights and the factors of the prior depend on
+/// the solution and enter its weights, so that the fit is a fixed-point iteration. Each update
+/// makes a Gauss-Newton step. From the same linearisation it then estimates the noise (the noise of
+/// a marker coordinate unless that is given), the weights and the width of the prior (if the
+/// options say so). The loads that deflect the robot are computed anew in each update.
 ///
-/// `updates`: of noise and prior at most; a start for another fit needs few.
+/// `updates` limits the number of updates; a fit that only starts another needs few.
 Fit FitParameters(const FitProblem& problem, const Selection& selection,
                   const std::vector<int>& free, const Fit& start, Robustness robustness,
                   int updates = kMaxUpdates);
 
-/// How errors are correlated in motions, by what a fit leaves that need not have settled.
+/// Estimates how errors are correlated within motions, from the residuals of a fit that need not
+/// have settled.
 void CorrelateMotions(const FitProblem& problem, const Selection& selection,
                       const std::vector<int>& free, Fit& fit);
 
-/// Solves to the last digit, with noise, weights and prior as they are and loads as the solution
-/// has them.
+/// Solves to full precision with noise, weights and prior unchanged, while the loads follow the
+/// solution.
 void Polish(const FitProblem& problem, const Selection& selection, const std::vector<int>& free,
             Fit& fit);
 
-/// Covariance of the unknowns in the units of the solver; that of `parameters` goes into the fit's
-/// posterior.
+/// Returns the covariance of the unknowns in the units of the solver, and stores that of
+/// `parameters` (SI) in the fit's posterior.
 Eigen::MatrixXd TakeCovariance(const FitProblem& problem, const std::vector<int>& parameters,
                                const NormalEquations& equations, Fit& fit);
 
-/// Uncertainty of `parameters`, with noise, weights and prior as they are.
+/// Computes the posterior of `parameters` with noise, weights and prior unchanged, its cluster
+/// factor and degrees of freedom included.
 void UpdatePosterior(const FitProblem& problem, const Selection& selection,
                      const std::vector<int>& parameters, Fit& fit);
 

@@ -11,19 +11,20 @@
 
 namespace elastocal {
 
-// Feet stand flat on one level floor. That tells how the soles lie in their links, which the
-// markers of the feet cannot: their own positions are unknown. (The place of a sole within the
-// floor's plane and its heading remain unknown.)
+// Feet stand flat on one level floor. This tells the attitude and the height of the soles in their
+// links. The markers of the feet cannot tell them, because their own positions are unknown. (The
+// place of a sole within the floor's plane and its heading remain unknown.)
 
 using Matrix3x6d = Eigen::Matrix<double, 3, 6>;
 
-/// A footing against the floor: how far its sole leans, along two horizontal directions [rad], and
-/// how far it is above the sole of the first footing [m]; zero where both are flat on one level
-/// floor.
+/// Deviation of a footing from the floor: the tilt of its sole about two horizontal directions
+/// [rad], and its height above the sole of the first footing [m]. All are zero where both soles are
+/// flat on one level floor.
 struct FloorResidual {
   Eigen::Vector3d residual;
-  Matrix3x6d by_foot;                           ///< by displacement and rotation in its own axes
-  Eigen::Matrix<double, 1, 6> height_by_first;  ///< of the last row, by those of the first footing
+  Matrix3x6d by_foot;  ///< by the foot's displacement and rotation in its own axes
+  /// Last row, by displacement and rotation of the first footing.
+  Eigen::Matrix<double, 1, 6> height_by_first;
 };
 
 /// `up` is the direction of the floor's normal in the reference frame, `up_foot` that of the sole
@@ -31,19 +32,19 @@ struct FloorResidual {
 FloorResidual EvaluateFloor(const Transform& T_ref_foot, const Transform& T_ref_first,
                             const Eigen::Vector3d& up, const Eigen::Vector3d& up_foot);
 
-/// Whether a footing, as it was placed, may be flat on one floor with the first one: it leans by no
-/// more than 8 degrees, and is no more than 20 mm higher or lower. What is beyond cannot be errors
-/// of a robot: it is a ramp, a step, or a wrong `up`.
+/// Which rows of a FloorResidual are used for a footing as it was first placed. `tilt`: the sole
+/// leans by at most 8 degrees. `height`: it is at most 20 mm above or below the first. Larger
+/// deviations are no errors of a robot but a ramp, a step, or a wrong `up`.
 struct FloorUse {
   bool tilt = false, height = false;
 };
 FloorUse UseOfFloor(const FloorResidual& placed);
 
-/// The footings on legs, the first of which the heights of all others refer to.
+/// The footings on legs. Heights refer to the first of them.
 std::vector<int> FloorFootings(const Placement& placement);
 
-/// Direction in the frame of a leg's foot that is up while the sole is flat: that of the zero
-/// posture with the root link upright.
+/// Direction in the frame of a leg's foot that points up while the sole is flat: vertical in the
+/// zero posture with the root link upright.
 Eigen::Vector3d UpOfFoot(const ErrorModel& model, int leg);
 
 }  // namespace elastocal

@@ -10,9 +10,9 @@
 namespace elastocal {
 namespace {
 
-constexpr int kPosturesAssessed = 20;  // spread over the recording: sizes change little with more
+constexpr int kPosturesAssessed = 20;  // number of postures; the result changes little with more
 
-/// Poses of the links in the frame of the link `from`.
+/// Poses of `links` in the frame of the link `from`.
 std::vector<Transform> PosesFrom(int from, const ErrorModel& model, const Geometry& geometry,
                                  const Eigen::VectorXd& q, const std::vector<int>& links) {
   const std::vector<Transform> all = CalibratedLinkTransforms(model, geometry, q);
@@ -30,7 +30,7 @@ std::vector<int> SomePostures(const Recording& recording) {
   return postures;
 }
 
-/// The links that no joint without errors of its own moves.
+/// Removes the links that are moved by a joint whose errors are not in the model.
 std::vector<int> MovedByKnownJoints(const ErrorModel& model, std::vector<int> links) {
   std::erase_if(links, [&](int link) {
     const std::vector<int> joints =
@@ -46,8 +46,8 @@ bool PlacesLinks(const Parameter& parameter) {
   return !IsExternal(parameter.kind) && !IsCompliance(parameter.kind);
 }
 
-/// By posture and link six rows, displacement and rotation of the links seen from `from`, with each
-/// parameter.
+/// Derivatives of the poses of `links`, seen from `from`, by the parameters: six rows
+/// (displacement, rotation) for each posture and link.
 Eigen::MatrixXd SlopesOfFrames(int from, const KnownGeometry& known,
                                const Eigen::MatrixXd& postures, const std::vector<int>& links) {
   const ErrorModel& model = known.model;

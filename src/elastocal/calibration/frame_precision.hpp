@@ -7,20 +7,20 @@
 
 namespace elastocal {
 
-/// How well a calibration tells where a link is in the frame of the root link, springs aside: the
-/// error to be expected of the calibrated robot description, root mean square over the recorded
-/// postures. Markers that are fitted do not show it: a whole limb may turn or be displaced with the
-/// markers on it, as far as their places on the links are not known.
+/// Expected error of a link's pose in the frame of the root link according to the calibrated robot
+/// description, without springs: root mean square over the recorded postures. Fitted markers do not
+/// show this error: a whole limb may be displaced together with its markers, as far as their
+/// positions on the links are unknown.
 struct FramePrecision {
   int link = 0;
-  double position_sd = 0.0;  ///< of the distance to where it truly is, m
-  double attitude_sd = 0.0;  ///< of the angle, rad
+  double position_sd = 0.0;  ///< standard deviation of the link's position (distance), m
+  double attitude_sd = 0.0;  ///< standard deviation of the link's attitude (angle), rad
 };
 
-/// One entry a link, in their order, but for links behind a joint that moves no seen marker: of
-/// these the recording says nothing. From the covariance of all estimates, to first order;
-/// parameters that are held are taken as right, and corrections beside geometry and springs
-/// (eccentricity, gear ...) are left out.
+/// One entry for each link of `ends`, in that order. Links that depend on a joint without estimated
+/// parameters (it moves no seen marker) are left out. The result follows from the covariance of all
+/// estimates to first order, over about 20 postures. Held parameters count as exact; compliances,
+/// markers and T0 are left out.
 std::vector<FramePrecision> AssessFrames(const CalibrationResult& result,
                                          const Recording& recording, const std::vector<int>& ends);
 

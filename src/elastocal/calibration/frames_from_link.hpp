@@ -7,16 +7,16 @@
 
 namespace elastocal {
 
-/// Errors of geometry and how well they are known together.
+/// Errors of a model with their covariance.
 struct KnownGeometry {
   const ErrorModel& model;
   const Eigen::VectorXd& delta;
   const std::vector<int>& parameters;  ///< indices into the model's
-  const Eigen::MatrixXd& covariance;   ///< of these, in products of their SI units
+  const Eigen::MatrixXd& covariance;   ///< their covariance, in products of their SI units
 };
 
-/// AssessFrames of links that are seen from the link `from` (0: the root link), over the postures
-/// (rows). Nothing where the recording says nothing of that link.
+/// As AssessFrames, but seen from the link `from` (0: the root link), over `postures` (one a row).
+/// Empty where the recording says nothing of `from`.
 std::vector<FramePrecision> AssessFramesFrom(int from, const KnownGeometry& known,
                                              const Eigen::MatrixXd& postures,
                                              const std::vector<int>& ends);

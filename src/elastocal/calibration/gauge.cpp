@@ -13,7 +13,8 @@
 namespace elastocal {
 namespace {
 
-constexpr double kGaugeStep = 1e-5;  // rad and m, of central differences: an error of 1e-10
+// Step of the central differences, rad and m; it leaves an error of 1e-10.
+constexpr double kGaugeStep = 1e-5;
 
 /// Rotz(gamma) Trz(b) Rotx(alpha) Trx(d) Rotz(theta) Trz(r), alpha near 90 degrees.
 struct SixConstants {
@@ -33,7 +34,7 @@ struct SixConstants {
 
 double Wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 
-/// Of a joint's parameter of eq. 1: its constant with its error, less the nominal one.
+/// Error of one constant of eq. 1: its present value less the nominal one.
 double ConstantError(ParameterKind kind, const SixConstants& now, const JointPlacement& nominal) {
   switch (kind) {
     case ParameterKind::kGamma:
@@ -55,12 +56,12 @@ bool OnRoot(const ErrorModel& model, int joint) {
   return joint >= 0 && model.tree.joints[joint].parent_body == 0;
 }
 
-/// Whether a parameter places a joint on the root.
+/// Whether a parameter is geometric and places a joint on the root.
 bool PlacesOnRoot(const ErrorModel& model, const Parameter& parameter) {
   return OnRoot(model, parameter.joint) && parameter.leg < 0 && !IsElastic(parameter.kind);
 }
 
-/// The joint's axis frame in the root link's, at position zero and without loads.
+/// The joint's frame in that of the root link, at position zero and without loads.
 Transform JointInRoot(const Geometry& geometry, int joint) {
   const Geometry::JointConstants& constants = geometry.joints[joint];
   Transform T = Transform::Identity();
@@ -73,7 +74,7 @@ Transform NominalInRoot(const ErrorModel& model, int joint) {
   return JointInRoot(ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count())), joint);
 }
 
-/// The joint on the root that carries the link; -1: none of the model.
+/// The joint on the root that moves the link's body; -1: there is none in the model.
 int JointOfLink(const ErrorModel& model, const std::string& link) {
   const int body = model.tree.links[FindLink(model.tree, link)].body;
   const bool active =
@@ -81,7 +82,7 @@ int JointOfLink(const ErrorModel& model, const std::string& link) {
   return body > 0 && active && OnRoot(model, body - 1) ? body - 1 : -1;
 }
 
-/// The errors that change with the root's frame.
+/// The errors that depend on the root link's frame.
 std::vector<int> DisplacedErrors(const ErrorModel& model) {
   std::vector<int> displaced;
   for (int i = 0; i < model.parameter_count(); ++i) {
@@ -97,7 +98,7 @@ std::vector<int> DisplacedErrors(const ErrorModel& model) {
 
 using ErrorMap = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
 
-/// Derivative of a map that changes only the errors `displaced`, between `parameters`.
+/// Derivative, among `parameters`, of a map that changes only the errors `displaced`.
 Eigen::MatrixXd GaugeDerivative(const ErrorMap& map, const Eigen::VectorXd& at,
                                 const std::vector<int>& displaced,
                                 const std::vector<int>& parameters) {
@@ -123,7 +124,7 @@ void DisplacePlacement(const Transform& T_root_new, Placement& placement) {
   }
 }
 
-/// Takes parameters that have become nominal by definition out of the posterior.
+/// Removes parameters that are nominal by definition from the posterior.
 void Hold(const std::vector<int>& held, CalibrationResult& result) {
   Posterior& posterior = result.posterior;
   std::vector<int> left, positions;

@@ -10,19 +10,18 @@
 namespace elastocal {
 namespace {
 
-/// The six compliances along and about the axes of the foot, of a leg in a posture.
+/// The six compliances of a leg in a posture, along and about the axes of the foot.
 Vector6d Compliances(const CalibrationResult& result, const Eigen::VectorXd& delta,
                      const Eigen::VectorXd& q, int leg) {
   return LumpedCompliance(result.model, ApplyErrors(result.model, delta), q, leg).diagonal();
 }
 
-/// Loads by statics alone are as uncertain as the masses of a robot description: some 5 % a link.
+/// Relative uncertainty of loads by statics alone: that of the masses in a robot description.
 constexpr double kMassShare = 0.05;
 
-/// Standard deviations of the compliances: by those of the parameters that they are made of, and by
-/// the share to which the loads are uncertain that deflected each of them (a compliance is what the
-/// cameras saw over that load). They are linear in the parameters, so that one difference each is
-/// exact.
+/// Standard deviations of a leg's compliances. They contain the covariance of the parameters and
+/// the relative uncertainty of the loads (a compliance is the deflection that the cameras saw over
+/// the load). Compliances are linear in the parameters, so that a forward difference is exact.
 Vector6d CompliancesSd(const CalibrationResult& result, const Eigen::VectorXd& q, int leg,
                        double load_share) {
   const std::vector<int>& parameters = result.posterior.parameters;

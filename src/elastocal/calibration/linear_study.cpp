@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-/// The fit that a result came from, in the parameters of the wide model.
+/// The fit of a result, expressed in the parameters of the wide model.
 Fit WideFit(const ErrorModel& wide, const CalibrationResult& result) {
   Fit fit;
   fit.delta = ErrorsByName(wide, NamedErrors(result.model, result.delta));
@@ -84,7 +84,8 @@ class StudyMaker {
     std::sort(free_.begin(), free_.end());
   }
 
-  /// Which column of the study an entry of x is; -1: nuisance, or a compliance at zero.
+  /// Finds the column of the study for each entry of x; -1 for a pose of the waist or a compliance
+  /// at zero.
   void Arrange(const BodyResiduals& body, const Eigen::VectorXd& x) {
     column_.assign(static_cast<std::size_t>(x.size()), -1);
     first_.assign(1, 0);
@@ -116,7 +117,8 @@ class StudyMaker {
     return tie < ties ? body.tied_postures()[tie] : -1;
   }
 
-  /// The Jacobian of a residual block by all columns of the study, and by the nuisance.
+  /// The Jacobian of a residual block by all columns of the study. `nuisance` receives its columns
+  /// of the waist's pose.
   Eigen::MatrixXd Spread(const BodyResiduals& body, int block, Eigen::MatrixXd* nuisance) const {
     const auto& shape = body.residual_blocks[block];
     const auto& J = body.Jacobian(block);
@@ -167,7 +169,7 @@ class StudyMaker {
     if (!nuisance.isZero(0.0) && rows > 6) Eliminate(nuisance, of);
   }
 
-  /// Leaves what the pose of the waist does not explain.
+  /// Removes from a posture what the pose of the waist explains.
   void Eliminate(const Eigen::MatrixXd& nuisance, LinearStudy::Posture& of) const {
     const Eigen::MatrixXd Q = ThinOrthogonalFactor(nuisance);
     of.residual -= Q * (Q.transpose() * of.residual);

@@ -10,18 +10,21 @@
 
 namespace elastocal {
 
-/// What was found on the way.
+/// Loads that had to be computed by statics.
 struct LoadReport {
-  std::vector<int> badly_conditioned;  ///< postures with statics for want of a bent knee
-  std::vector<int> without_torques;    ///< joints of legs with statics for want of a sensor
+  /// Postures in which torques do not determine the load, because the knee is straight.
+  std::vector<int> badly_conditioned;
+  std::vector<int> without_torques;  ///< joints of legs whose torque was not measured
 };
 
-/// What the robot felt in a posture of a recording, standing on a leg of the model (-1: on none).
+/// Measured torques in a posture and, standing on `leg` of the model, the measured wrench of a
+/// sensor on that leg. -1: on no leg.
 MeasuredLoads MeasuredLoadsOf(const ErrorModel& model, const Recording& recording, int posture,
                               int leg);
 
-/// Loads in every posture, for a model with errors `delta` that stands as `placement` says (of a
-/// table of postures: upright, T0 being part of `delta`). One entry a posture.
+/// Loads in every posture (one entry each) of a model with errors `delta` that stands as
+/// `placement` says. In a posture table the robot stands upright, and T0 is part of `delta`.
+/// `report`, if given, receives where statics replaced measurements.
 std::vector<PostureLoads> ComputeLoads(const ErrorModel& model, const Recording& recording,
                                        const Eigen::VectorXd& delta, const Placement& placement,
                                        const LoadOptions& options, LoadReport* report = nullptr);

@@ -18,7 +18,7 @@ std::string CoordinateOf(const std::string& marker, int axis) {
   return kMarkerPrefix + marker + "." + "xyz"[axis];
 }
 
-/// Deviation from nominal.
+/// Measured place minus nominal position.
 Eigen::Vector3d DeviationOf(const MarkerMeasurement& place, const ErrorModel& model) {
   const auto found = std::ranges::find(model.markers, place.marker, &Marker::name);
   return place.p_link_marker - found->p_link_marker;
@@ -28,7 +28,7 @@ bool HasMarker(const ErrorModel& model, const std::string& name) {
   return std::ranges::find(model.markers, name, &Marker::name) != model.markers.end();
 }
 
-/// A number that nothing was known of.
+/// Adds a quantity of which nothing was known.
 void Add(const std::string& name, double value, double variance, EarlierEstimate& known) {
   const Eigen::Index row = known.mean.size();
   known.names.push_back(name);
@@ -40,7 +40,7 @@ void Add(const std::string& name, double value, double variance, EarlierEstimate
   known.covariance(row, row) = variance;
 }
 
-/// One more measurement of a number (Kalman's update).
+/// Adds a measurement of a known quantity (Kalman's update).
 void Measure(Eigen::Index row, double value, double variance, EarlierEstimate& known) {
   const Eigen::VectorXd column = known.covariance.col(row);
   const double total = column[row] + variance;
@@ -54,8 +54,9 @@ double PlaceResidual::in_sds() const { return std::sqrt(squares / 3.0); }
 
 std::vector<PlaceResidual> PlaceResiduals(const std::vector<MarkerMeasurement>& places,
                                           const CalibrationResult& result) {
-  // Where the place alone tells a direction, nothing can be left, and rounding is no evidence. A
-  // scatter of postures that is in the covariance is no part of what places tell.
+  // Where the place alone determines a direction, the residual must be zero, and rounding is no
+  // evidence. The cluster factor in the covariance comes from the scatter of postures, not from the
+  // places, and is taken out.
   constexpr double kLeastShare = 0.05;
   std::vector<PlaceResidual> left;
   for (const MarkerMeasurement& place : places) {

@@ -10,53 +10,56 @@
 
 namespace elastocal {
 
-/// Where a marker is on its link, as it was measured there.
+/// Position of a marker on its link that was measured by other means.
 struct MarkerMeasurement {
   std::string marker;
   Eigen::Vector3d p_link_marker = Eigen::Vector3d::Zero();  ///< in the frame of its link, m
-  double sd = 0.0;                                          ///< of each coordinate, m
+  double sd = 0.0;  ///< standard deviation of each coordinate, m
 };
 
-/// Adds the measured places of markers that the model has to what is known beforehand: a normal
-/// distribution about each, besides what an earlier calibration says of the same markers.
+/// Adds measured places to the prior knowledge `known`: a normal distribution about each
+/// coordinate, combined with what an earlier calibration says of the same marker. Markers that the
+/// model does not have are ignored.
 void KnowMarkers(const std::vector<MarkerMeasurement>& places, const ErrorModel& model,
                  EarlierEstimate& known);
 
-/// How far an estimate that was made with a measured place has the marker from it.
+/// Deviation of an estimated marker position from its measured place, in an estimate that used the
+/// place.
 struct PlaceResidual {
   std::string marker;
   double distance = 0.0;  ///< m
-  /// Chi-squared of the three numbers: what is left has the variance of the measurement less that
-  /// of the estimate there, of which the place is a part.
+  /// Chi-squared of the three coordinates. The expected variance is that of the measurement less
+  /// that of the estimate, because the estimate contains the place.
   double squares = 0.0;
-  double in_sds() const;  ///< root mean square of the three, in standard deviations; 1 is expected
+  /// Root mean square of the three coordinates, in standard deviations; 1 is expected.
+  double in_sds() const;
 };
 
-/// Of the markers whose places were fitted.
+/// Residuals of the places whose markers were estimated.
 std::vector<PlaceResidual> PlaceResiduals(const std::vector<MarkerMeasurement>& places,
                                           const CalibrationResult& result);
 
-/// A place that contradicts where the data and the other places have the marker.
+/// A place that contradicts the marker's position according to the data and the other places.
 struct ContradictoryPlace {
   std::string marker;
   double distance = 0.0;  ///< m
 };
 
-/// How measured places agree with an estimate that was made with them.
+/// Agreement of measured places with an estimate that used them.
 struct PlaceAgreement {
-  /// By how much their standard deviations are too small: 1, or what makes the median of what is
-  /// left the expected one.
+  /// Factor by which the standard deviations of the places are too small: the one that makes the
+  /// median residual the expected one, at least 1.
   double factor = 1.0;
-  /// Those that are further off than chance allows, with standard deviations that much larger, the
-  /// furthest first.
+  /// Places that are further off than chance allows, after `factor` is applied; the furthest first.
   std::vector<ContradictoryPlace> contradictory;
 };
 
-/// By the residuals of the places; a chance of `probability` that a right place is named.
+/// Judges measured places by their residuals. With probability `probability` at least one correct
+/// place is named.
 PlaceAgreement JudgeMarkers(const std::vector<MarkerMeasurement>& places,
                             const CalibrationResult& result, double probability);
 
-/// Whether what is known beforehand is about the robot, and not about places of markers alone.
+/// Whether the prior knowledge contains parameters of the robot, and not only positions of markers.
 bool KnowsRobot(const EarlierEstimate& known);
 
 }  // namespace elastocal

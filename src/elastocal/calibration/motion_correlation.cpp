@@ -11,11 +11,14 @@ namespace elastocal {
 namespace {
 
 constexpr int kLeastMotionPairs = 10;
-constexpr double kLeastShare = 0.05;      // of the errors of the model in the variance of a row
-constexpr double kLeastWidening = 0.5;    // of the variance of a row, by correlation
-constexpr double kLeastLeftByPose = 0.1;  // of a row, by the poses
-constexpr double kChance = 3.0;           // standard deviations of a correlation that is none
-// Distances are looked at up to so many pairs, but in any case so many of them: long tables.
+// Smallest share of the model's errors in the variance of a row.
+constexpr double kLeastShare = 0.05;
+// Smallest increase of a row's variance by correlation that matters, relative.
+constexpr double kLeastWidening = 0.5;
+constexpr double kLeastLeftByPose = 0.1;  // smallest share of a row that the poses leave
+constexpr double kChance = 3.0;           // in standard deviations of a correlation of zero
+// Limits of the lags that are evaluated: so many pairs, but at least so many lags. Long tables
+// would take too long.
 constexpr int kMostPairs = 20'000'000, kLags = 500;
 
 /// First posture and number of postures of each motion. They follow each other.
@@ -33,8 +36,8 @@ std::vector<Motion> FindMotions(const std::vector<int>& motion) {
   return found;
 }
 
-/// What is followed through the postures: the displacement of one body, or what the constraint
-/// leaves. 0 where nothing was seen.
+/// Values of one quantity over the postures: the displacement of one body, or the residual of the
+/// constraint. 0 where nothing was seen.
 struct Track {
   Eigen::MatrixXd values;   // rows x postures
   Eigen::RowVectorXd seen;  // 1 or 0
@@ -56,19 +59,19 @@ BlockRows RowsOf(const BodyResiduals& residuals, const ExplainedRows& explained,
           LeftByPose(explained, block, counts).head(rows)};
 }
 
-/// The tracks of a group.
+/// The tracks of one group.
 class Tracks {
  public:
   explicit Tracks(int postures) : postures_(postures) {}
 
-  /// `share`: of the errors of the model in the variance of each row.
+  /// `share` is the share of the model's errors in the variance of each row.
   void Add(int body, int posture, const BlockRows& rows, double share) {
     const auto [at, added] = tracks_.try_emplace(body);
     if (added) {
       at->second = {Eigen::MatrixXd::Zero(rows.residual.size(), postures_),
                     Eigen::RowVectorXd::Zero(postures_)};
     }
-    // In standard deviations of the errors of the model in one moment, as if no pose were
+    // In standard deviations of the model's errors in one moment, as they would be if no pose were
     // estimated.
     at->second.values.col(posture) =
         rows.residual / ((1.0 - rows.by_pose).max(kLeastLeftByPose) * (share * rows.counts).sqrt());
@@ -79,7 +82,7 @@ class Tracks {
 
   Autocorrelation Correlation(const std::vector<Motion>& motions) const {
     Autocorrelation found;
-    // The parameters take up a part of the errors, whatever their distance.
+    // The parameters absorb a part of the errors, at every lag alike.
     const double left = left_ > 0.0 ? squares_ / left_ : 0.0;
     const LagSum together = SumAtLag(motions, 0);
     if (!(left > 0.0) || together.rows <= 0.0) return found;
@@ -104,7 +107,7 @@ class Tracks {
   }
 
  private:
-  /// Over all pairs of moments at one distance.
+  /// Sums over all pairs of moments at one lag.
   struct LagSum {
     double products = 0.0, pairs = 0.0, rows = 0.0;
   };
@@ -130,7 +133,7 @@ class Tracks {
   int postures_;
   std::map<int, Track> tracks_;  // by body
   double squares_ = 0.0;         // of residuals
-  double left_ = 0.0;            // what they would be if only poses were estimated
+  double left_ = 0.0;            // expected value of `squares_` if only poses were estimated
 };
 
 }  // namespace
@@ -163,8 +166,8 @@ std::vector<MotionCorrelation> FindMotionCorrelation(const FitProblem& problem,
   }
   std::vector<MotionCorrelation> found;
   for (int g = 0; g < noise.group_count(); ++g) {
-    // Weighted by their correlation, errors may become too small to tell it: it stays then, if it
-    // matters.
+    // Weighted by their correlation, the errors may become too small to show it; the value before
+    // is then kept if it matters.
     const double before = noise.motion.empty() ? 1.0 : noise.motion[g].bodies.samples_each;
     const bool stays = share_of[g] < kLeastShare && share_of[g] * (before - 1.0) > kLeastWidening;
     found.push_back({.bodies = stays ? noise.motion[g].bodies : bodies[g].Correlation(motions),

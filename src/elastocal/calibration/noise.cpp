@@ -7,8 +7,8 @@
 namespace elastocal {
 namespace {
 
-/// Joints of the tree that any of the trial's observations of its chains depends on: those that
-/// move a marker that is seen, the supporting legs' aside.
+/// Joints that a trial exercises: those that move a seen marker, without the joints of the
+/// supporting legs.
 std::set<int> ExercisedJoints(const ErrorModel& model, const Recording& recording, int trial) {
   std::set<int> support;
   for (int link : recording.trials[trial].support) {
@@ -61,7 +61,8 @@ std::vector<int> NoiseGroups(const ErrorModel& model, const Recording& recording
     joints_of_group[group] = std::move(joints);
     group_of_trial[t] = group;
   }
-  // Numbers without holes, in the order of the postures: a refused trial has none, and no group.
+  // Numbers the groups without gaps, in the order of the postures. A refused trial has no posture
+  // and no group.
   std::vector<int> order, groups;
   for (int trial : recording.trial) {
     const int group = group_of_trial[trial];

@@ -10,41 +10,45 @@
 
 namespace elastocal {
 
-/// What the model leaves unexplained comes from several sources, and each has its own standard
-/// deviation (variance components).
+/// Sources of what the model leaves unexplained. Each has its own standard deviation (variance
+/// components).
 enum class NoiseSource {
-  kMarker,         ///< of each marker coordinate by itself: cameras, and rotations of a body; m
-  kBodyPosition,   ///< displacement that all markers of a body share in a posture; m
-  kWaistPosition,  ///< between the waist as the markers see it and as the elastic leg on its foot
-                   ///< gives it (the constraint of eq. 14); m
-  kWaistRotation,  ///< likewise; rad
+  /// Independent for each marker coordinate: noise of the cameras, and rotations of a body; m.
+  kMarker,
+  kBodyPosition,  ///< displacement that all markers of a body share in a posture; m
+  /// Difference between the waist's position by its markers and by the elastic leg on its foot (the
+  /// constraint of eq. 14); m.
+  kWaistPosition,
+  kWaistRotation,  ///< the same difference of rotations; rad
 };
 inline constexpr int kNoiseSourceCount = 4;
 
 /// marker, body_position, waist_position, waist_rotation
 const char* NoiseSourceName(NoiseSource source);
 
-/// How much neighbouring moments of a motion tell.
+/// Correlation of neighbouring moments of a motion.
 struct Autocorrelation {
   double lag_one = 0.0;       ///< correlation from one moment to the next
-  double samples_each = 1.0;  ///< so many moments tell as much as one posture by itself
+  double samples_each = 1.0;  ///< number of moments that tell as much as one independent posture
 };
 
-/// How errors of neighbouring moments are correlated: those that the markers of a body share, and
-/// what the constraint of the standing foot (eq. 14) leaves (FindMotionCorrelation).
+/// Correlation of errors between moments of a motion: of the displacement that the markers of a
+/// body share, and of the residual of the standing foot's constraint (eq. 14). See
+/// FindMotionCorrelation.
 struct MotionCorrelation {
   Autocorrelation bodies;
   Autocorrelation waist;
 };
 
-/// Standard deviations by group of postures and source: chains differ in how well the model fits
-/// them, and a badly fitting leg shall not blur an arm. Errors of the model, which all markers of a
-/// body share, are told from the noise of the cameras, which averages out: on real robots they are
-/// most of what is left, and counting the markers of a body as independent would make standard
-/// deviations too small.
+/// Standard deviations by group of postures and by source. Groups are separate because chains
+/// differ in how well the model fits them: a badly fitting leg must not blur an arm. Errors of the
+/// model, which all markers of a body share, are separated from the noise of the cameras, which
+/// averages out. On real robots they are most of the residual, and treating the markers of a body
+/// as independent would make standard deviations too small.
 struct Noise {
-  Eigen::ArrayXXd sd;                          ///< groups x sources
-  std::vector<MotionCorrelation> motion = {};  ///< by group; empty: no posture is of a motion
+  Eigen::ArrayXXd sd;  ///< groups x sources
+  /// By group; empty where no posture belongs to a motion.
+  std::vector<MotionCorrelation> motion = {};
 
   double& operator()(int group, NoiseSource source) { return sd(group, static_cast<int>(source)); }
   double operator()(int group, NoiseSource source) const {
@@ -57,8 +61,8 @@ struct Noise {
   int group_count() const { return static_cast<int>(sd.rows()); }
 };
 
-/// Group of each posture: trials whose chains share a joint (head and both arms: the trunk's) are
-/// one. All 0 for a table of postures.
+/// Group of each posture. Trials whose chains share a joint form one group (head and both arms
+/// share the trunk). All 0 for a posture table.
 std::vector<int> NoiseGroups(const ErrorModel& model, const Recording& recording);
 
 }  // namespace elastocal

@@ -15,13 +15,15 @@
 namespace elastocal {
 namespace {
 
-constexpr double kEnoughDirections = 20.0;        // so that the sd is known to a sixth
+constexpr double kEnoughDirections = 20.0;        // gives `sd` to one sixth
 constexpr double kLeastSd = 1e-6, kMostSd = 1.0;  // m
-constexpr double kHelpful = 0.01;  // m: three markers then place a link as well as priors do
+// With this, three markers place a link as well as the priors do.
+constexpr double kHelpful = 0.01;
 constexpr double kFarLess = 3.0;
 constexpr int kSearchSteps = 60;
 
-/// Rows of the covariance with the coordinates of a body's markers, and where these are nominally.
+/// Rows of the covariance that hold the coordinates of a body's markers, and the nominal positions
+/// of these.
 struct BodyMarkers {
   std::vector<int> rows;
   std::vector<Eigen::Vector3d> coordinate_axes, at;  ///< in the body's frame, by row
@@ -42,7 +44,8 @@ std::map<int, BodyMarkers> MarkersByBody(const CalibrationResult& result) {
   return bodies;
 }
 
-/// Orthonormal columns: changes of the coordinates by displacements and turns of all as one piece.
+/// Orthonormal basis of the changes of coordinates by a rigid displacement or rotation of all
+/// markers.
 Eigen::MatrixXd RigidMotions(const BodyMarkers& body) {
   const auto rows = static_cast<Eigen::Index>(body.rows.size());
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -56,8 +59,8 @@ Eigen::MatrixXd RigidMotions(const BodyMarkers& body) {
   return ThinOrthogonalFactor(motions);
 }
 
-/// Twice the negative logarithm of the likelihood of independent deviations with variances beside
-/// that of `sd`.
+/// Minus twice the log likelihood of independent deviations whose variances are `variances` plus
+/// sd^2.
 double Unlikeliness(double sd, const Eigen::VectorXd& deviations,
                     const Eigen::VectorXd& variances) {
   const Eigen::ArrayXd all = variances.array() + sd * sd;
@@ -77,7 +80,7 @@ double LikeliestSd(const Eigen::VectorXd& deviations, const Eigen::VectorXd& var
   }
   const double step = std::pow(kMostSd / kLeastSd, 1.0 / kSearchSteps);
   double low = best / step, high = best * step;
-  for (int i = 0; i < kSearchSteps; ++i) {  // without one of the outer thirds
+  for (int i = 0; i < kSearchSteps; ++i) {  // ternary search
     const double left = low + (high - low) / 3.0, right = high - (high - low) / 3.0;
     const bool lower =
         Unlikeliness(left, deviations, variances) < Unlikeliness(right, deviations, variances);
@@ -115,7 +118,7 @@ NominalPlaces AssessNominalPlaces(const CalibrationResult& result) {
   const Eigen::VectorXd deviations = apart.vectors.transpose() * (motions.transpose() * estimates);
   const Eigen::VectorXd variances = apart.values.cwiseMax(0.0);
   const double sd = LikeliestSd(deviations, variances);
-  // Each tells of the variance as much as its share is of it.
+  // Each direction counts by the square of its share in the variance.
   const Eigen::ArrayXd shares = sd * sd / (variances.array() + sd * sd);
   std::vector<double> priors;
   for (int i : result.posterior.parameters) {

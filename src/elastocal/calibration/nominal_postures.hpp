@@ -9,20 +9,20 @@
 
 namespace elastocal {
 
-/// Where the nominal robot has all markers of a recording in one of its postures, m (3 x markers),
-/// in the root link's frame.
+/// Positions of all markers of a recording on the nominal robot in one posture, m (3 x markers), in
+/// the root link's frame.
 struct NominalPosture {
   int posture = 0;
   Eigen::Matrix3Xd markers;
 };
 
-/// About `most` postures of a trial (-1: of all), evenly spread. `model` has the recording's
-/// markers.
+/// At most `most` postures of a trial (-1: of all trials), evenly spread. `model` has the
+/// recording's markers.
 std::vector<NominalPosture> NominalPostures(const ErrorModel& model, const Recording& recording,
                                             int trial, std::size_t most);
 
-/// The root link in the frame of the markers, by those that are seen but for `without`; none where
-/// fewer than three are left.
+/// Pose of the root link in the frame of the markers, by the markers that are seen and not in
+/// `without`. Nothing where fewer than three are left.
 std::optional<Transform> PlaceRoot(const Recording& recording, const NominalPosture& nominal,
                                    const std::vector<int>& without);
 

@@ -71,7 +71,8 @@ BodyObservation MakeBodyObservation(int posture, int body, std::vector<int> mark
     shared.block<3, 3>(3 * k, 0).setIdentity();
     shared.block<3, 3>(3 * k, 3) = -Skew(from_centre.col(k));
   }
-  // Displacements are orthogonal to rotations about the centre; of these, the principal ones are.
+  // Displacements are orthogonal to rotations about the centre; the principal rotations are
+  // orthogonal to each other.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> turns(shared.rightCols<3>().transpose() *
                                                              shared.rightCols<3>());
   Eigen::MatrixXd first(size, 6);

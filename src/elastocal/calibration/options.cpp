@@ -8,9 +8,9 @@ namespace elastocal {
 namespace {
 
 constexpr double kExternalScale = 0.01;  // m and rad
-constexpr double kUnknown = 1e3;         // times the unit of a parameter: nothing is known
+constexpr double kUnknown = 1e3;         // times the unit of a parameter: beyond, nothing is known
 
-/// Of a parameter of a robot as it leaves the bench, SI.
+/// Typical error of a parameter of a new robot, SI.
 double TypicalError(ParameterKind kind) {
   switch (kind) {
     case ParameterKind::kTorsion:

@@ -29,11 +29,12 @@ inline constexpr int kPriorGroupCount = 8;
 /// angles, lengths, torsion, bending, base_force, base_moment, torque_bias, corrections
 const char* PriorGroupName(PriorGroup group);
 
-/// The group of a joint's or leg's parameter.
+/// The group of a kind of parameter of a joint or leg.
 PriorGroup GroupOf(ParameterKind kind);
 
-/// The prior of a group is widened no further than this. For geometry 10: what lies beyond is no
-/// error of a robot. For springs 100: they differ from robot to robot by far more.
+/// Largest factor by which the prior of a group is widened: 10 for geometry and corrections, beyond
+/// which nothing is an error of a robot; 100 for elastic parameters, which differ far more from
+/// robot to robot.
 double MostWidening(PriorGroup group);
 
 /// Factors by which a prior is widened, by group.
@@ -45,37 +46,40 @@ struct PriorScale {
   double operator[](PriorGroup group) const { return factor[static_cast<int>(group)]; }
 };
 
-/// Standard deviation of the Gaussian prior on each kind of parameter, around nominal, in the
-/// parameter's SI unit. All parameters have one, so that all can be estimated together: what the
-/// data do not tell apart is shared out as the priors say. docs/formats.md gives the reasons.
+/// Standard deviations of the Gaussian prior about nominal, by kind of parameter, in the
+/// parameter's SI unit. All parameters have a prior, so that all can be estimated together: what
+/// the data do not tell apart is divided as the priors say. docs/formats.md gives the reasons.
 struct Prior {
-  /// By kind. 0.5 degrees and 1 mm on joints; 1 rad and 1 m on T0 and markers, about which nobody
-  /// knows anything beforehand; legs about an axis 5e-5 rad/(N.m), along an axis 1e-5 m/N; torque
-  /// sensors 2 N.m. Torsion and bending 0: by `deflection`.
+  /// By kind: 0.5 degrees and 1 mm for joints; 1 rad and 1 m for T0 and markers, of which nothing
+  /// is known beforehand; 5e-5 rad/(N.m) about and 1e-5 m/N along an axis for legs; 2 N.m for
+  /// torque sensors. 0 for torsion and bending, whose prior follows from `deflection`.
   std::array<double, kParameterKindCount> sd;
-  /// How far a revolute joint gives way, about and across its axis, under its largest torque (the
-  /// URDF's effort), rad: strong joints are stiff. Corrections: as they say themselves.
+  /// Deflection of a revolute joint, about and across its axis, under its largest torque (the
+  /// URDF's effort), rad, from which the prior of torsion and bending follows: strong joints are
+  /// stiff. Without effort it is 5e-5 rad/(N.m). (Corrections and linkages have priors of their
+  /// own.)
   double deflection = 0.01;
-  PriorScale scale = {};  ///< by which all are multiplied
+  PriorScale scale = {};  ///< factors on all standard deviations
 
   Prior();
   double& operator[](ParameterKind kind) { return sd[static_cast<int>(kind)]; }
   double operator[](ParameterKind kind) const { return sd[static_cast<int>(kind)]; }
 
-  /// That of a parameter of the robot, widened; never more than what counts as unknown.
+  /// Widened standard deviation for a parameter of the robot; at most 1000 units of ParameterScale,
+  /// which counts as unknown.
   double Of(const RobotTree& tree, const Parameter& parameter) const;
 };
 
-/// Unit of each parameter in the solver: of similar influence whatever the parameter. 0.5 degrees,
-/// 1 mm, 5e-5 rad/(N.m), ...; of T0 and markers 0.01 (m or rad).
+/// Unit of a parameter in the solver, such that all parameters have a similar influence: 0.5
+/// degrees, 1 mm, 5e-5 rad/(N.m), ...; 0.01 (m or rad) for T0 and markers.
 double ParameterScale(const Parameter& parameter);
 
 /// How the support foot's constraint (eq. 14) enters.
 enum class SupportForm {
-  /// The waist of each posture is unknown: tied to the foot by the elastic leg within what that
-  /// model leaves unexplained (estimated), and seen by its markers and those it carries.
+  /// The waist of each posture is unknown. The elastic leg ties it to the foot within an estimated
+  /// standard deviation, and the markers on the waist and on what it carries see it.
   kNuisance,
-  /// The leg is taken as exact: everything hangs on the foot.
+  /// The leg counts as exact: every posture hangs on the foot.
   kFootRooted,
 };
 
@@ -85,16 +89,17 @@ enum class OutlierPolicy {
   kKeep,    ///< they are named and kept, at the weight that heavy tails give them
 };
 
-/// Who says where the root link's frame is, which no measurement tells (gauge.hpp).
+/// Rule that chooses the root link's frame, which no measurement tells (gauge.hpp).
 enum class GaugeRule {
-  kPrior,           ///< the prior, by corrections that are small together
-  kNominalMarkers,  ///< the nominal positions of the root's markers
-  kLink,            ///< a link that a joint on the root carries: it is at its nominal place
+  kPrior,  ///< the prior chooses: the corrections together are small
+  /// The markers on the root link keep their nominal positions as well as possible.
+  kNominalMarkers,
+  kLink,  ///< a link that a joint on the root carries keeps its nominal place
 };
 
 struct Gauge {
   GaugeRule rule = GaugeRule::kPrior;
-  std::string link = {};  ///< of kLink
+  std::string link = {};  ///< for kLink: name of the link
 };
 
 /// prior, nominal_markers, link NAME
@@ -102,48 +107,49 @@ std::string GaugeText(const Gauge& gauge);
 
 /// Which causes beyond geometry and springs are estimated (corrections.hpp).
 struct ExtraCauses {
-  bool automatic = true;           ///< those that held-out errors ask for; else:
-  std::vector<std::string> names;  ///< `*` stands for any run of characters; none: none
+  /// Take the causes that lower held-out errors; if false, those in `names`.
+  bool automatic = true;
+  std::vector<std::string> names;  ///< `*` stands for any run of characters; empty: no cause
 };
 
 struct CalibrationOptions {
   Prior prior = {};
-  /// Widen the prior where the estimates say that the robot is further from nominal than it expects
-  /// (evidence approximation, MacKay 1992): by one factor for each PriorGroup, at least 1 and at
-  /// most MostWidening. A prior that is too narrow biases the estimates and makes their
-  /// uncertainty too small.
+  /// Whether to widen the prior where the estimates are further from nominal than it expects
+  /// (evidence approximation, MacKay 1992): by one factor for each PriorGroup, from 1 to
+  /// MostWidening. A prior that is too narrow biases the estimates and makes their uncertainty too
+  /// small.
   bool widen_prior = true;
-  /// What an earlier calibration of the robot says; of its parameters it is the prior, and it is
-  /// not widened.
+  /// Result of an earlier calibration of the robot. It is the prior of its parameters and is not
+  /// widened.
   EarlierEstimate earlier = {};
-  /// By how much the zero of a joint drifts in a day, as a part of its prior's standard deviation,
-  /// and other parameters by a quarter of that: what an earlier calibration says is less certain by
-  /// the day (a random walk).
+  /// Drift of a joint's zero in one day, as a share of its prior's standard deviation (a random
+  /// walk); other parameters drift by a quarter of that. An earlier calibration becomes less
+  /// certain by it from day to day.
   double drift = 0.02;
   /// White noise of one marker coordinate, m. Zero: estimated from the residuals.
   double marker_sd = 0.0;
   /// What happens to observations that contradict the others (FindOutliers).
   OutlierPolicy outliers = OutlierPolicy::kRemove;
-  /// Noise of a marker coordinate above this means that the model does not explain the recording,
-  /// m.
+  /// Noise of a marker coordinate, m, above which the model does not explain the recording.
   double plausible_marker_sd = 5e-3;
-  /// Chance that a recording without a single outlier has one named all the same.
+  /// Probability that at least one outlier is named in a recording without any.
   double outlier_probability = 0.01;
-  /// A parameter whose posterior standard deviation stays above this part of its prior one is
-  /// listed as not supported by the data: they tell it at best together with others.
+  /// A parameter is unsupported if its posterior standard deviation is at least this share of its
+  /// prior one: the data tell it at best together with others.
   double support_threshold = 0.9;
   /// Correlations at or above this are reported.
   double correlation_threshold = 0.9;
   SupportForm support_form = SupportForm::kNuisance;
-  /// A foot whose markers are displaced by more than this between two postures has slipped: it
-  /// stands elsewhere from there on, m.
+  /// Displacement of a foot's markers between two postures, m, above which the foot has slipped and
+  /// stands elsewhere from then on.
   double slip = 1e-3;
-  /// How far from flat on one level floor the soles of feet that carry the robot may be (see
-  /// floor.hpp): slopes [rad], and heights against each other [m]; infinite: it is not used.
+  /// Standard deviations by which the soles of feet that carry the robot deviate from flat on one
+  /// level floor (floor.hpp): tilt [rad] and height against each other [m]. Infinite: the floor is
+  /// not used.
   double floor_tilt_sd = 0.1 * M_PI / 180.0, floor_height_sd = 1e-3;
   LoadOptions load = {};
   ExtraCauses extra = {};
-  Gauge gauge = {};  ///< that a result is given at the end (ApplyGauge)
+  Gauge gauge = {};  ///< gauge that a result has at the end (ApplyGauge)
   int max_iterations = 100;
 };
 

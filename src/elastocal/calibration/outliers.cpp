@@ -15,13 +15,15 @@ namespace {
 
 constexpr double kLeastVariance = 0.05;
 constexpr double kTailFreedom = 4.0;  // of Student's distribution, beyond which an error is gross
-constexpr std::size_t kLeastMarkers = 3;  // of a body, that one of them can be said to be wrong
-constexpr double kLeastReach = 1e-3;      // of a displacement in the shape, relative, squared
-constexpr double kRoughExcess = 0.25;     // more than the fit's part in it can make of it
+// Smallest number of markers on a body of which one can be judged wrong.
+constexpr std::size_t kLeastMarkers = 3;
+// Smallest squared effect of a displacement on the shape, relative.
+constexpr double kLeastReach = 1e-3;
+constexpr double kRoughExcess = 0.25;  // smallest excess that the fit's share could raise to 1
 
-/// Squared Mahalanobis distance, with variances no smaller than a part of the noise: an observation
-/// that alone determines a parameter has a residual of zero and a variance of zero. All in units of
-/// the noise.
+/// Squared Mahalanobis distance in units of the noise. Variances are at least a share of the
+/// largest: an observation that alone determines a parameter has a residual of zero and a variance
+/// of zero.
 double SquaredDistance(const Eigen::VectorXd& residual, const Eigen::MatrixXd& covariance) {
   const SymmetricDecomposition eigen = DecomposeSymmetric(covariance);
   const double largest = eigen.values.tail<1>()[0];
@@ -29,7 +31,8 @@ double SquaredDistance(const Eigen::VectorXd& residual, const Eigen::MatrixXd& c
   return ((eigen.vectors.transpose() * residual).array().square() / variances).sum();
 }
 
-/// Of `size` numbers whose variance was estimated with `freedom` degrees of freedom.
+/// Limit of the squared distance of `size` numbers whose variance was estimated with `freedom`
+/// degrees of freedom.
 double Threshold(double level, double size, double freedom) {
   return std::isinf(freedom) ? ChiSquareQuantile(level, size)
                              : size * FisherQuantile(level, size, freedom);
@@ -89,7 +92,7 @@ class OutlierSearch {
                                 std::sqrt(square)});
   }
 
-  /// By the noise itself, whatever the weights.
+  /// Squared distance of a body's shared rows by the noise alone, without weights.
   double SharedSquare(int b) const {
     const BodyObservation& body = selection_.bodies[b];
     const Eigen::ArrayXd squares =
@@ -98,7 +101,8 @@ class OutlierSearch {
     return squares.head(body.shared_rows()).sum();
   }
 
-  /// Heavy tails, and a covariance that the fit has made smaller or, of what is left out, larger.
+  /// Applies the limit for heavy tails. The fit reduces the variance of what it used and increases
+  /// that of what was left out.
   bool IsGross(double square, Eigen::Index rows, double explained, bool used) {
     const auto size = static_cast<double>(rows);
     const double share = std::min(1.0 - kLeastVariance, explained / size);
@@ -108,7 +112,7 @@ class OutlierSearch {
     return square / variance > limit->second;
   }
 
-  /// Of the squared distance of a marker in so many directions.
+  /// Limit of the squared distance of a marker in `rank` directions.
   double MarkerLimit(Eigen::Index rank) {
     const auto [limit, added] = marker_limits_.try_emplace(rank);
     if (added) {
@@ -134,17 +138,17 @@ class OutlierSearch {
     for (std::size_t n = 0; n < body.markers.size(); ++n) Name(b, n, square);
   }
 
-  /// The marker whose own displacement explains most of how the shape of the body has changed, then
-  /// the next beside it, and so on.
+  /// Finds the marker whose own displacement explains most of the body's change of shape, then the
+  /// next beside it, and so on.
   void FindContradictions(int b, std::vector<char>& wrong) {
     const Eigen::Index shared = selection_.bodies[b].shared_rows();
     const Eigen::Index own = residuals_.body.Residual(b).size() - shared;
     Eigen::VectorXd z = residuals_.body.Residual(b).tail(own);
     Eigen::MatrixXd P = Eigen::MatrixXd::Identity(own, own);
-    // Less than what the whole body is off anyway matters to nothing.
+    // A displacement smaller than the shared error of the whole body does not matter.
     const double least =
         fit_.noise(problem_.group[selection_.bodies[b].posture], NoiseSource::kBodyPosition);
-    bool rough = true;  // first without what the fit explains, which costs most to know
+    bool rough = true;  // the first round leaves out what the fit explains, which takes most time
     for (std::size_t left = wrong.size(); left >= kLeastMarkers;) {
       std::size_t worst = wrong.size();
       ShapeTest largest;
@@ -165,7 +169,7 @@ class OutlierSearch {
       wrong[worst] = 1;
       Name(b, worst, largest.square);
       const Eigen::MatrixXd M = Displacement(b, worst).bottomRows(own);
-      // Singular in directions that do not change the shape.
+      // M' P M is singular in directions that do not change the shape.
       const SymmetricDecomposition reach = DecomposeSymmetric(M.transpose() * P * M);
       const Eigen::ArrayXd sizes = reach.values.array();
       const Eigen::VectorXd inverse =
@@ -184,8 +188,8 @@ class OutlierSearch {
     double displacement = 0.0;  ///< of the marker in its directions, m
   };
 
-  /// Of a displacement M in the rows z with covariance P. Displacements that do not change the
-  /// shape (of three markers: across their plane) do not count.
+  /// Tests a displacement M in the rows z with covariance P. Directions that do not change the
+  /// shape (with three markers: across their plane) are left out.
   ShapeTest TestShape(const Eigen::MatrixXd& M, const Eigen::VectorXd& z,
                       const Eigen::MatrixXd& P) {
     const SymmetricDecomposition reach = DecomposeSymmetric(M.transpose() * M);
@@ -200,15 +204,15 @@ class OutlierSearch {
     return test;
   }
 
-  /// Of one marker of a body, in the rows of its residual block.
+  /// Effect of displacing one marker of a body, in the rows of the body's residual block.
   Eigen::MatrixXd Displacement(int b, std::size_t n) const {
     Eigen::MatrixXd at = Eigen::MatrixXd::Zero(residuals_.body.Residual(b).size(), 3);
     at.middleRows<3>(3 * static_cast<Eigen::Index>(n)).setIdentity();
     return residuals_.body.Whiten(b, at);
   }
 
-  /// Whether a marker that was left out still stands out: from where the markers of its body that
-  /// take part say that it is, else from the model.
+  /// Names a marker that was left out again if it is still off: from the position that the used
+  /// markers of its body predict (two or more), else from the model.
   void JudgeLeftOut(int b) {
     const BodyObservation& body = selection_.bodies[b];
     const auto others = std::find_if(
@@ -232,14 +236,14 @@ class OutlierSearch {
     if (square > MarkerLimit(3)) Name(b, 0, square);
   }
 
-  /// Where the others of its body have a marker's residual, and the covariance of that.
+  /// Residual of a marker that the other markers of its body predict, with its covariance.
   void Predict(int others, Eigen::Vector3d& expected, Eigen::Matrix3d& covariance) const {
     const BodyObservation& of = selection_.bodies[others];
     const int group = problem_.group[of.posture];
     const auto count = static_cast<Eigen::Index>(of.markers.size());
     const double white = fit_.noise.Variance(group, NoiseSource::kMarker);
     const double shared = fit_.noise.Variance(group, NoiseSource::kBodyPosition);
-    // The mean of the others, as far as it is a displacement of the body.
+    // The mean of the others, reduced to the share that is a displacement of the body.
     const double gain = shared / (shared + white / static_cast<double>(count));
     expected = gain * Raw(others).reshaped(3, count).rowwise().mean();
     covariance = (shared * (1.0 - gain) + white) * Eigen::Matrix3d::Identity();
@@ -267,7 +271,8 @@ class OutlierSearch {
   std::optional<NormalEquations> equations_;
   Eigen::MatrixXd covariance_;
   double level_ = 0.0, marker_level_ = 0.0;
-  std::map<Eigen::Index, double> gross_limits_, marker_limits_;  // by rows: quantiles take long
+  // by number of rows, because quantiles take long
+  std::map<Eigen::Index, double> gross_limits_, marker_limits_;
   OutlierVerdict verdict_;
 };
 

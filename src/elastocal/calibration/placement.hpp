@@ -9,23 +9,23 @@
 
 namespace elastocal {
 
-/// A foot (or the root link) that stands still through some postures of one trial.
+/// A foot (or the held root link) that stands still through some postures of one trial.
 struct Footing {
   int trial = 0;
-  int leg = -1;               ///< of the model's legs; -1: the root link is held
-  std::vector<int> postures;  ///< ascending
+  int leg = -1;               ///< index of the model's leg; -1: the root link is held
+  std::vector<int> postures;  ///< indices of the postures, ascending
 };
 
-/// A foot, or a root link that is held, that was displaced between two postures of a trial.
+/// A displacement of a standing foot, or of a held root link, between two postures of a trial.
 struct Slip {
   int trial = 0;
   int leg = 0;            ///< as in Footing
-  int posture = 0;        ///< the first one after it
-  double distance = 0.0;  ///< of its markers, m
+  int posture = 0;        ///< the first posture after the displacement
+  double distance = 0.0;  ///< median displacement of its markers, m
 };
 
-/// Where the robot stood in each posture: what belongs to the experiment, not to the robot. Empty
-/// for a table of postures whose waist does not move.
+/// Poses of the waist and of the footings in a recording. They belong to the experiment, not to the
+/// robot. Empty for a posture table, in which the waist does not move.
 struct Placement {
   std::vector<Footing> footings;
   std::vector<int> footing;              ///< by posture; -1: nothing ties the waist to the floor
@@ -35,17 +35,18 @@ struct Placement {
   bool empty() const { return T_ref_waist.empty(); }
 };
 
-/// Footings of all trials: a trial that stands on one of the model's legs, or whose root is held,
-/// has one, and one more after each slip of more than `slip_m`, which the markers of the foot (of
-/// the root link) show. A trial on both feet has none: how the load is shared is unknown, and the
-/// waist is seen by its own markers; nor has one whose root is free. `slips`, where given, tells
-/// the slips found.
+/// Finds the footings of all trials. A trial that stands on one of the model's legs, or whose root
+/// is held, has one, and a further one after each slip: a displacement of the markers of the foot
+/// (of the root link) by more than `slip_m`. A trial on both feet has none, because the
+/// distribution of the load is unknown and the waist's own markers show the waist. A trial with a
+/// free root has none either. `slips`, if given, receives the slips.
 std::vector<Footing> FindFootings(const ErrorModel& model, const Recording& recording,
                                   double slip_m, std::vector<Slip>* slips = nullptr);
 
-/// A first guess of all poses, by the nominal kinematics and marker positions: the waist of each
-/// posture by its markers (least squares), each footing by the first of its waists. A posture with
-/// fewer than three markers gets the waist of its neighbour. Empty where the waist does not move.
+/// First guess of all poses by the nominal kinematics and marker positions. The waist of each
+/// posture is placed by its markers (least squares), each footing by the waist of its first
+/// posture. A posture with fewer than three markers gets the waist of the posture before it. Empty
+/// where the waist does not move.
 Placement RegisterPlacement(const ErrorModel& model, const Recording& recording, double slip_m);
 
 }  // namespace elastocal

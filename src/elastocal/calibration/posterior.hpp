@@ -9,20 +9,21 @@
 
 namespace elastocal {
 
-/// Uncertainty of estimated parameters around a solution, to first order: the inverse of the
-/// information J^T J that observations, constraints and prior give together, poses of waist and
-/// feet being unknown as well.
+/// Uncertainty of estimated parameters about a solution, to first order: the inverse of the
+/// information J^T J of observations, constraints and prior together, with the poses of waist and
+/// feet as further unknowns.
 struct Posterior {
   std::vector<int> parameters;  ///< indices into the model's, ascending
-  Eigen::MatrixXd covariance;   ///< of these, in products of their SI units
-  /// What the data alone tell of them, without the prior: inverse products of SI units.
+  Eigen::MatrixXd covariance;   ///< covariance of these, in products of their SI units
+  /// Information of the data alone on these parameters, without the prior; inverse products of SI
+  /// units.
   Eigen::MatrixXd data_information;
-  /// Number of parameters (poses included) that the data, rather than the prior, determine: trace
-  /// of the share of the data in the information.
+  /// Number of unknowns (poses included) that the data determine rather than the prior: the trace
+  /// of the data's share in the information.
   double effective_parameters = 0.0;
 
-  /// Variance of the estimates by the scatter of the postures (cluster-robust), over that by the
-  /// noise model; above 1 it is in the covariance.
+  /// Variance of the estimates by the scatter of the postures (cluster-robust) over the variance by
+  /// the noise model. If it is above 1, the covariance contains it.
   double cluster_factor = 1.0;
 
   Eigen::VectorXd StandardDeviations() const { return covariance.diagonal().cwiseSqrt(); }
@@ -31,7 +32,8 @@ struct Posterior {
 /// Inverse of a positive definite matrix.
 Eigen::MatrixXd InverseOfInformation(const Eigen::MatrixXd& information);
 
-/// Covariance of `parameters`, the first unknowns, from that of all unknowns of the solver.
+/// Covariance of `parameters` in SI units, from that of all unknowns in the units of the solver, of
+/// which they are the first.
 Eigen::MatrixXd ParameterCovariance(const ErrorModel& model, const std::vector<int>& parameters,
                                     const Eigen::MatrixXd& covariance);
 

@@ -16,7 +16,7 @@
 namespace elastocal {
 namespace {
 
-/// Pairs of points that a rigid motion shall bring together.
+/// Pairs of points from which a rigid transform is fitted.
 class Registration {
  public:
   void Add(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -29,7 +29,7 @@ class Registration {
   std::vector<Eigen::Vector3d> from_, to_;
 };
 
-/// Registration of the markers seen in a posture that `takes(marker)`.
+/// Adds the markers seen in a posture for which `takes(marker)` is true.
 template <typename Takes>
 void AddMarkers(const Recording& recording, int posture, const Eigen::Matrix3Xd& positions,
                 const Takes& takes, Registration& registration) {
@@ -40,8 +40,8 @@ void AddMarkers(const Recording& recording, int posture, const Eigen::Matrix3Xd&
   }
 }
 
-/// The footing of `known` that stands for one of a recording: same trial and leg. None where that
-/// foot slipped: which of its footings it was is unknown.
+/// The pose in `known` of a footing with the same trial and leg. Null if there is none, or if that
+/// foot slipped, so that several footings match.
 const Transform* FindKnown(const Placement* known, const Footing& footing) {
   const Transform* found = nullptr;
   for (std::size_t f = 0; known != nullptr && f < known->footings.size(); ++f) {
@@ -96,7 +96,7 @@ class Predictor {
     return model_.tree.links[model_.markers[marker].link].body ==
            model_.tree.links[model_.legs[leg].link].body;
   }
-  /// By the footing; those on the foot itself without what is between it and the waist.
+  /// Positions in the foot's frame. Markers on the foot itself do not depend on the leg.
   Eigen::Matrix3Xd MarkersInFoot(int leg, int posture, const Transform& T_foot_waist) const {
     Eigen::Matrix3Xd positions = T_foot_waist * MarkersInWaist(posture);
     if (leg < 0) return positions;

@@ -12,7 +12,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-/// Nominal positions of markers in the waist, and the measured ones.
+/// Computes nominal marker positions in the waist, and pairs them with the measured ones.
 class NominalMarkers {
  public:
   NominalMarkers(const ErrorModel& model, const Recording& recording)
@@ -33,7 +33,7 @@ class NominalMarkers {
   }
 
  private:
-  ErrorModel model_;  // its waist at the origin
+  ErrorModel model_;  // with the waist at the origin
   const Recording& recording_;
   Geometry geometry_;
 };

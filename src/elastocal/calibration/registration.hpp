@@ -10,11 +10,11 @@
 namespace elastocal {
 
 /// Pose of the waist in the reference frame that brings the nominal marker positions closest to the
-/// measured ones (least squares over all postures, closed form): the starting point for T0, about
-/// which nothing is known beforehand. As good as the nominal marker positions are.
+/// measured ones (least squares over all postures, closed form). It is the starting point for T0,
+/// and as exact as the nominal marker positions are.
 Transform RegisterWaist(const ErrorModel& model, const Recording& recording);
 
-/// The same of each posture by itself: as many as the recording has postures. None where fewer than
+/// As RegisterWaist, but for each posture by itself (one entry each). Nothing where fewer than
 /// three markers were seen.
 std::vector<std::optional<Transform>> RegisterWaistByPosture(const ErrorModel& model,
                                                              const Recording& recording);

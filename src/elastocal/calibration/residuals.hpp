@@ -16,11 +16,11 @@
 
 namespace elastocal {
 
-/// How much a body in a posture, or a posture's support constraint, counts: 1, or less where it is
+/// Weight of a body in a posture, or of a posture's support constraint: 1, or less where it is
 /// further off than the noise explains (a likelihood with heavy tails).
 struct Weight {
-  double shared = 1.0;  ///< of what the markers share; of a constraint
-  double own = 1.0;     ///< of what is left of each marker
+  double shared = 1.0;  ///< weight of what all markers of the body share, or of a constraint
+  double own = 1.0;     ///< weight of the markers' own residuals, beside what they share
 };
 
 struct RobustWeights {
@@ -28,11 +28,11 @@ struct RobustWeights {
   std::vector<double> ties;    ///< by posture; empty: all 1
 };
 
-/// What the residuals are made from; keeps references.
+/// Inputs of the residuals; keeps references.
 struct ResidualInputs {
   const ErrorModel& model;
   const Recording& recording;
-  const std::vector<int>& group;  ///< of each posture, see NoiseGroups
+  const std::vector<int>& group;  ///< noise group of each posture, see NoiseGroups
   const Selection& selection;
   const std::vector<PostureLoads>& loads;  ///< by posture; empty: nothing is elastic
   const Prior& prior;
@@ -41,25 +41,30 @@ struct ResidualInputs {
   const CalibrationOptions& options;
 };
 
-/// Eq. 14 as a least-squares problem: for the markers of every body in every posture the difference
-/// between measured and predicted positions (those on the foot that stands: from the footing, the
-/// others from the waist), in the basis of BodyObservation; for every posture on one foot what its
-/// constraint leaves (see support_tie.hpp); for every footing on a leg how far its sole is from
-/// flat on the floor (floor.hpp); for every parameter its deviation from nominal, or together
-/// that from an earlier estimate; for every footing (vaguely, 1 m and 1 rad) its displacement; each
-/// over its standard deviation.
+/// Eq. 14 as a least-squares problem. Each residual is divided by its standard deviation:
 ///
-/// The unknowns are those of BodyUnknowns. A body in a posture meets one waist (in a table of
-/// postures none), so that these are eliminated first.
+/// - for every body in every posture: measured minus predicted positions of its markers, in the
+///   basis of BodyObservation (markers on the standing foot are predicted from the footing, the
+///   others from the waist);
+/// - for every posture on one foot: the residual of its support constraint (support_tie.hpp);
+/// - for every footing on a leg: the deviation of its sole from the floor (floor.hpp);
+/// - for every parameter: its deviation from nominal, or for all parameters of an earlier estimate
+///   together their deviation from that;
+/// - for every footing: its displacement, with a vague prior (1 m and 1 rad).
+///
+/// The unknowns are those of BodyUnknowns. A body in a posture depends on one waist at most (in a
+/// posture table on none), so that the poses of the waist are eliminated first.
 class BodyResiduals : public LeastSquaresProblem {
  public:
-  /// `free`: indices of the estimated parameters, ascending; all others stay as in `delta` (one
-  /// value a parameter). The inputs' referents and `placement` must outlive it.
+  /// `free` holds the indices of the estimated parameters, ascending; all others keep their value
+  /// in `delta` (one value a parameter). What the inputs refer to, and `placement`, must outlive
+  /// the object.
   BodyResiduals(const ResidualInputs& inputs, const std::vector<int>& free,
                 const Eigen::VectorXd& delta, const Placement& placement);
 
   static constexpr double kPoseScale = BodyUnknowns::kPoseScale;
-  /// The loads now follow the solution `x`. (At first they are those of the errors given.)
+  /// Tells that the loads in the inputs were computed for the solution `x`. (At first they are
+  /// those of the errors given.)
   void LoadsFollow(const Eigen::VectorXd& x) {
     loaded_geometry_ = ApplyErrors(in_.model, unknowns_.ToErrors(x));
   }
@@ -69,22 +74,23 @@ class BodyResiduals : public LeastSquaresProblem {
   Eigen::VectorXd ToErrors(const Eigen::VectorXd& x) const { return unknowns_.ToErrors(x); }
   Placement ToPlacement(const Eigen::VectorXd& x) const { return unknowns_.ToPlacement(x); }
 
-  /// Residual blocks: first the bodies of the selection, then the constraints, then those
-  /// of the floor, then the priors, that of an earlier estimate last.
+  /// Order of the residual blocks: the bodies of the selection, the support constraints, the floor,
+  /// the priors, and last the prior of an earlier estimate.
   int body_count() const { return static_cast<int>(in_.selection.bodies.size()); }
   const std::vector<int>& tied_postures() const { return tied_postures_; }
   int TieBlock(int tie) const { return body_count() + tie; }
 
-  /// As how many postures the one of a body or constraint counts, by row: 1, or less where it is a
-  /// moment of a motion, whose neighbours share their model error with it (Noise::motion); noise of
-  /// single markers they do not share. Standard deviations are larger by the root of its inverse.
+  /// Number of postures for which one body or constraint counts, by row. It is 1, or less for a
+  /// moment of a motion, whose neighbours share the model's errors with it (Noise::motion); the
+  /// noise of single markers is not shared. Standard deviations are larger by the root of its
+  /// inverse.
   Eigen::ArrayXd Counts(int block) const;
 
-  /// Rows in units of the residual's standard deviation of what would displace the markers of a
-  /// body by the columns of `displacement` (3 markers x any, m).
+  /// Expresses displacements of a body's markers (columns of `displacement`, 3 markers x any, m) as
+  /// rows of its residual block, in units of their standard deviations.
   Eigen::MatrixXd Whiten(int body, const Eigen::MatrixXd& displacement) const;
-  /// Standard deviations of a residual block's rows: in the basis of the body, m; of a constraint,
-  /// m and rad.
+  /// Standard deviations of a residual block's rows: of a body in its basis, m; of a constraint, m
+  /// and rad.
   const Eigen::VectorXd& Sds(int block) const { return sds_[block]; }
 
   void Evaluate(const Eigen::VectorXd& x, bool with_jacobians) override;
@@ -103,8 +109,8 @@ class BodyResiduals : public LeastSquaresProblem {
   }
   Eigen::VectorXd BodySds(std::size_t body) const;
   Vector6d TieSds(int posture) const;
-  /// How many moments like this one tell as much as one posture, by the correlation of bodies or of
-  /// the waist; 1 of other postures.
+  /// Number of moments that tell as much as one posture, by the correlation of bodies or of the
+  /// waist; 1 where the posture belongs to no motion.
   double SamplesEach(int posture, Autocorrelation MotionCorrelation::*of) const;
   /// Whether the body is the foot that the posture stands on.
   bool IsStandingFoot(int posture, int body) const;
@@ -119,23 +125,24 @@ class BodyResiduals : public LeastSquaresProblem {
   const Placement& placement_;
   BodyUnknowns unknowns_;
   GeneralizedJacobian jacobian_;
-  std::vector<int> motion_;                                         // of each posture
+  std::vector<int> motion_;  // motion of each posture; -1: none
   std::vector<std::vector<BodyUnknowns::Columns>> marker_columns_;  // by marker
   std::vector<std::vector<BodyUnknowns::Columns>> leg_columns_;     // by leg
   std::vector<BodyUnknowns::Deflection> deflections_;               // by leg
   std::vector<int> tied_postures_;
   std::vector<int> floor_footings_;
   std::vector<std::vector<int>> blocks_of_posture_;
-  std::vector<int> prior_unknowns_;    // by prior residual block: its first entry of x
-  std::vector<double> prior_weights_;  // likewise: of the entries
-  std::vector<int> earlier_entries_;   // of x, of the last block; empty: there is no such block
+  std::vector<int> prior_unknowns_;    // by block of a prior: its first entry of x
+  std::vector<double> prior_weights_;  // by block of a prior: weight of its entries
+  // entries of x in the block of the earlier estimate; empty: there is none
+  std::vector<int> earlier_entries_;
   Eigen::VectorXd earlier_offset_;
   Eigen::VectorXd x_;
-  Geometry geometry_, loaded_geometry_;  // now, and with which the loads were found
-  std::vector<Eigen::VectorXd> sds_;     // by block, priors aside
+  Geometry geometry_, loaded_geometry_;  // at x; at the solution for which the loads were computed
+  std::vector<Eigen::VectorXd> sds_;     // by block, without the priors
   std::vector<Eigen::VectorXd> residuals_;
   std::vector<RowMajorMatrix> jacobians_;
-  Eigen::VectorXd raw_;  // of the body in hand, m
+  Eigen::VectorXd raw_;  // residuals of the body being evaluated, m
   Eigen::MatrixXd raw_jacobian_;
 };
 

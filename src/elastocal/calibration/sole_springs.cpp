@@ -13,13 +13,13 @@ namespace elastocal {
 namespace {
 
 constexpr double kStaysWithin = 0.3e-3;            // m
-constexpr double kSinksLess = 5e-3;                // m: else it was lifted
+constexpr double kSinksLess = 5e-3;                // m: more means that the foot was lifted
 constexpr double kTurnsLess = 0.3 * M_PI / 180.0;  // rad
-constexpr double kLeastChange = 0.2;               // of the weight: less is no change of load
-constexpr double kLoadShare = 0.05;                // to which loads are known
+constexpr double kLeastChange = 0.2;               // share of the weight: less is no change of load
+constexpr double kLoadShare = 0.05;                // relative uncertainty of the loads
 
-/// Where the estimate has markers in the link of their foot, m, columns; NaN: it does not have
-/// them.
+/// Estimated positions of the markers in the link of their foot, m, one a column; NaN for markers
+/// that the estimate does not have.
 Eigen::Matrix3Xd PlacesInLink(const CalibrationResult& result, const Geometry& geometry, int link,
                               const std::vector<std::string>& markers) {
   Eigen::Matrix3Xd places =
@@ -34,14 +34,14 @@ Eigen::Matrix3Xd PlacesInLink(const CalibrationResult& result, const Geometry& g
   return places;
 }
 
-/// How a foot moved: of its link's origin, m, and by how much it turned, rad.
+/// Motion of a foot: displacement of its link's origin, m, and angle, rad.
 struct FootMotion {
   Eigen::Vector3d shift;
   double turn = 0.0;
 };
 
-/// By the markers that were seen both times; nothing where these tell no pose, or are no longer
-/// where they were among each other. Columns are markers.
+/// Motion of a foot by the markers (columns) that were seen both times. Nothing where these do not
+/// determine a pose, or have moved relative to each other.
 std::optional<FootMotion> MotionBetween(const Eigen::Matrix3Xd& in_link,
                                         const Eigen::Matrix3Xd& before,
                                         const Eigen::Matrix3Xd& after) {
@@ -65,10 +65,10 @@ bool StaysWithin(const FootMotion& motion, const Eigen::Vector3d& up) {
          motion.turn < kTurnsLess;
 }
 
-/// What a foot does from the beginning of its stay on, by trial.
+/// A foot that stays in place over several trials: its motion since the first of them, by trial.
 struct Stay {
-  std::vector<Eigen::Vector3d> shift;  ///< along two directions of the floor, and up, m
-  std::vector<double> share;           ///< of the weight
+  std::vector<Eigen::Vector3d> shift;  ///< along two directions of the floor, then up, m
+  std::vector<double> share;           ///< load as share of the weight
 };
 
 /// The stays of one foot.
@@ -79,7 +79,7 @@ std::vector<Stay> FindStays(const CalibrationResult& result, const std::vector<F
   axes << up.unitOrthogonal().transpose(), up.cross(up.unitOrthogonal()).transpose(),
       up.transpose();
   std::vector<Stay> stays;
-  const FootRest* begin = nullptr;   // of the stay
+  const FootRest* begin = nullptr;   // first trial of the stay
   const FootRest* before = nullptr;  // the trial before this one
   for (const FootRest& rest : rests) {
     if (rest.link != link) continue;
@@ -111,12 +111,13 @@ double Mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Sums of squares over the stays of a foot, each about its own mean.
+/// Sums of squares over the stays of a foot, about the mean of each stay.
 struct Sums {
-  double loads = 0.0, sinking = 0.0, heights = 0.0;  ///< of shares of the weight, with m, m^2
-  double along = 0.0;                                ///< of both directions of the floor, m^2
-  int changes = 0;                                   ///< trials but the first of each stay
-  double change = 0.0;                               ///< the largest of a stay, of the weight
+  /// squares of the load (as share of the weight), products with height, squares of height; m
+  double loads = 0.0, sinking = 0.0, heights = 0.0;
+  double along = 0.0;   ///< along both directions of the floor, m^2
+  int changes = 0;      ///< number of trials without the first of each stay
+  double change = 0.0;  ///< the largest change of load in a stay, as share of the weight
 
   bool Loaded() const { return change > kLeastChange; }
 };

@@ -8,20 +8,20 @@
 
 namespace elastocal {
 
-/// The constraint of eq. 14 for one posture, as a residual: the support foot stands still, so that
-/// its constant pose and the elastic leg (eq. 6) give the pose of the waist, and the markers give
-/// it as well.
+/// Inputs of the constraint of eq. 14 for one posture. The support foot stands still: its constant
+/// pose and the elastic leg (eq. 6) give the pose of the waist, and the markers give it as well.
 struct SupportTie {
-  Transform T_ref_waist;           ///< as the markers see it
-  Transform T_ref_foot_predicted;  ///< from there by the rigid leg
-  Transform T_ref_foot;            ///< constant
-  /// How the waist gives way under its load: translation of its origin [m] and rotation vector
+  Transform T_ref_waist;           ///< waist by the markers
+  Transform T_ref_foot_predicted;  ///< foot, computed from there by the rigid leg
+  Transform T_ref_foot;            ///< constant pose of the foot
+  /// Deflection of the waist under its load: translation of its origin [m] and rotation vector
   /// [rad], in the axes of the foot.
   Vector6d deflection = Vector6d::Zero();
 };
 
-/// Translation of the waist's origin [m] and rotation vector [rad] that are left between the two,
-/// in the axes of the foot; zero where the constraint holds. With derivatives.
+/// Residual of the constraint: difference of the two poses of the waist, as translation of its
+/// origin [m] and rotation vector [rad] in the axes of the foot; zero where the constraint holds.
+/// With derivatives.
 struct TieResidual {
   Vector6d residual;
   /// By a screw [a; m] (velocity field a x p + m in the reference frame) of ...

@@ -11,10 +11,10 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeastLeft = 0.05;  // of the variance of a row
+constexpr double kLeastLeft = 0.05;  // smallest share of the variance of a row
 
-/// The cluster of each posture: one each, but of a motion as many moments together as twice those
-/// that tell as much as one posture.
+/// Cluster of each posture: one each, but in a motion up to twice `samples_each` consecutive
+/// moments form one.
 std::vector<int> ClusterOfPostures(const FitProblem& problem, const Noise& noise) {
   const std::vector<int> motion = MotionOfPostures(problem.recording);
   std::vector<int> cluster(motion.size());
@@ -32,7 +32,7 @@ std::vector<int> ClusterOfPostures(const FitProblem& problem, const Noise& noise
   return cluster;
 }
 
-/// The cluster of each residual block; -1 of priors.
+/// Cluster of each residual block; -1 for floor and priors.
 std::vector<int> ClusterOfBlocks(const std::vector<int>& cluster, const Selection& selection,
                                  const BodyResiduals& body) {
   std::vector<int> of_block;
@@ -42,8 +42,7 @@ std::vector<int> ClusterOfBlocks(const std::vector<int>& cluster, const Selectio
   return of_block;
 }
 
-/// Information of the prior on the unknowns in the units of the solver: of the parameters, then of
-/// what else is unknown.
+/// Information of the prior in the units of the solver: on the parameters, then on the poses.
 Eigen::SparseMatrix<double> PriorInformation(const FitProblem& problem, const Prior& prior,
                                              const std::vector<int>& parameters,
                                              Eigen::Index unknowns) {
@@ -65,11 +64,11 @@ Eigen::SparseMatrix<double> PriorInformation(const FitProblem& problem, const Pr
   return information.sparseView();
 }
 
-/// Compares the covariance with that of the cluster-robust (sandwich) estimator, whose clusters are
-/// the postures (ClusterOfPostures): residuals r over the root of what the fit leaves of their
-/// variance (HC2), and C (sum J' r r' J) C beside C J' J C. Where the postures scatter more than
-/// the noise model says, on average over the robot's parameters, the data's part of the covariance
-/// is widened.
+/// Compares the covariance with the cluster-robust (sandwich) estimator, whose clusters are those
+/// of ClusterOfPostures. Residuals r are divided by the root of the share of their variance that
+/// the fit leaves (HC2), and C (sum J' r r' J) C is compared with C J' J C. If the postures scatter
+/// more than the noise model says, on average over the robot's parameters, the data's part of the
+/// covariance is multiplied by that ratio.
 void WidenByClusters(const FitProblem& problem, const FitResiduals& residuals,
                      const Selection& selection, const NormalEquations& equations,
                      const Eigen::MatrixXd& covariance,
@@ -104,7 +103,8 @@ void WidenByClusters(const FitProblem& problem, const FitResiduals& residuals,
                                                   (fit.posterior.cluster_factor - 1.0) * by_data);
 }
 
-/// What the data tell of the parameters, poses of waist and feet being unknown, without the prior.
+/// Information of the data on the parameters, without the prior, after the poses of waist and feet
+/// are eliminated.
 Eigen::MatrixXd DataInformation(const FitProblem& problem, const Prior& prior,
                                 const std::vector<int>& parameters,
                                 const NormalEquations& equations) {

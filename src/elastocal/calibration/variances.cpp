@@ -11,12 +11,14 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeastTieShare = 0.1;   // of the marker noise [m, rad]: no constraint is better
-constexpr double kLeastRowsLeft = 0.01;  // of the rows is left over where it is all but zero
-constexpr double kHuberQuantile = 0.99;  // of the distance of a body within which it counts whole
-constexpr double kLeastSharedSd = 1e-3;  // of the marker noise [m, rad]: as good as none
+constexpr double kLeastTieShare = 0.1;  // of the marker noise [m, rad]: no constraint is more exact
+constexpr double kLeastRowsLeft = 0.01;  // smallest share of the rows that counts as left
+// quantile of a body's distance up to which its weight is 1
+constexpr double kHuberQuantile = 0.99;
+constexpr double kLeastSharedSd = 1e-3;  // of the marker noise [m, rad]: counts as none
 
-/// `counts`: as how many postures the rows count; `left`: what the fit leaves of them.
+/// `counts`: number of postures for which each row counts; `left`: what the fit leaves of its
+/// variance.
 void Add(const Eigen::ArrayXd& shares, const Eigen::VectorXd& residual,
          const Eigen::ArrayXd& counts, const Eigen::ArrayXd& left, VarianceComponent& component) {
   const double rows = (counts * shares).sum();
@@ -29,14 +31,14 @@ void Add(const Eigen::ArrayXd& shares, const Eigen::VectorXd& residual,
   component.means.push_back(squares / rows);
 }
 
-/// What the fit leaves of the variance of a block's rows.
+/// Share of the variance of a block's rows that the fit leaves.
 Eigen::ArrayXd LeftOfBlock(const ExplainedRows& explained, int block,
                            const Eigen::ArrayXd& counts) {
   return LeftByPose(explained, block, counts) -
          (explained.all[block] - explained.by_nuisance[block]).array();
 }
 
-/// Huber's weights, which keep the quantiles that they need: most bodies have as many rows.
+/// Huber's weights. Keeps the quantiles, because most bodies have the same number of rows.
 class HuberWeight {
  public:
   double operator()(double square, Eigen::Index rows) {
@@ -135,7 +137,7 @@ RobustWeights EstimateWeights(const FitProblem& problem, const Selection& select
   for (int b = 0; b < residuals.body_count(); ++b) {
     const BodyObservation& body = selection.bodies[b];
     if (!body.used) continue;
-    // In the units that the noise gives, whatever the weights were.
+    // In units of the noise alone, without the weights.
     const Eigen::ArrayXd squares =
         (residuals.Residual(b).array() * residuals.Sds(b).array()).square() /
         body.Variances(noise, problem.group[body.posture]);

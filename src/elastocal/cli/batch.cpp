@@ -41,19 +41,19 @@ constexpr std::size_t kMostFindings = 10;
 struct BatchCommand {
   CommonOptions common;
   std::string manifest, output;
-  int workers = 0;  ///< 0: one a core, or under mpirun one a rank
+  int workers = 0;  ///< 0: one for each core, or under mpirun one for each rank
   double level = 0.05;
 };
 
-volatile std::sig_atomic_t interrupted = 0;  // 0, or the signal
+volatile std::sig_atomic_t interrupted = 0;  // 0, or the number of the signal
 
-/// Ctrl-C at a batch; what is done stays done.
+/// State of a batch at Ctrl-C; finished tasks are kept.
 struct BatchInterrupted {
   int done = 0, all = 0;
 };
 
-/// Lets RunTasks see Ctrl-C, unless somebody (nohup, a shell in the background) has it ignored. A
-/// second one ends the program at once.
+/// Makes Ctrl-C visible to RunTasks, unless it is ignored (nohup, a shell in the background). A
+/// second Ctrl-C ends the program at once.
 void WatchInterruption() {
   for (const int number : {SIGINT, SIGTERM}) {
     struct sigaction action {};
@@ -65,8 +65,8 @@ void WatchInterruption() {
   }
 }
 
-/// Says how far it has come, and ends as the signal would have ended it. (mpirun, which ends its
-/// ranks then, mostly drops what they say last.)
+/// Prints the progress and ends as the signal would have ended the program. (mpirun, which then
+/// ends its ranks, mostly drops their last output.)
 [[noreturn]] void EndInterrupted(const BatchInterrupted& at) {
   spdlog::warn("interrupted: {} of {} tasks are done; the same command does the rest", at.done,
                at.all);
@@ -75,7 +75,7 @@ void WatchInterruption() {
   std::abort();
 }
 
-/// A folder for a batch is empty, or that of an earlier run of a batch.
+/// Refuses a folder that is neither empty nor that of an earlier run of a batch.
 void CheckFolder(const fs::path& output) {
   std::error_code error;
   if (!fs::exists(output, error) || fs::is_empty(output, error)) return;
@@ -91,8 +91,8 @@ void CheckFolder(const fs::path& output) {
       ": holds other things; an empty folder was expected, or that of an earlier batch");
 }
 
-/// Throws InputError for a word of the manifest that a command does not know: before the first
-/// task, since the last one may be days away.
+/// Throws InputError for a word in the manifest that a command does not know. This happens before
+/// the first task, because the last one may start days later.
 void RefuseUnknownWords(const std::string& manifest, const std::vector<FleetTask>& tasks) {
   for (const FleetTask& task : tasks) {
     for (const std::vector<std::string>& words : task.commands) {
@@ -115,7 +115,7 @@ std::vector<std::unique_ptr<TaskSlot>> LocalSlots(int count, const fs::path& out
 
 bool HasResult(const TaskEnd& end) { return end.exit_code == 0 || end.exit_code == 4; }
 
-/// Does what is not done yet; how each task ended.
+/// Does the tasks that are not done yet, and returns how each task ended.
 std::vector<TaskEnd> DoTasks(const BatchCommand& command, const std::vector<FleetTask>& tasks,
                              MpiRanks* ranks) {
   const fs::path output = command.output;
@@ -194,7 +194,7 @@ std::string DescribeFamily(const FleetReport& report) {
   return text;
 }
 
-/// What a command said last of its errors, or else first of all; empty where it said nothing.
+/// The last error message in a log, or else its first line; empty where it has none.
 std::string ErrorOf(const fs::path& log) {
   constexpr std::string_view kError = "error: ";
   std::ifstream lines(log);
@@ -207,7 +207,7 @@ std::string ErrorOf(const fs::path& log) {
   return error.empty() ? first : error;
 }
 
-/// Why tasks failed: of the first few that failed for other reasons.
+/// The reasons why tasks failed, for the first few with different reasons.
 std::string DescribeFailures(const std::vector<std::string>& failed, const fs::path& output) {
   constexpr std::size_t kMostReasons = 5;
   std::string text = fmt::format("Failed (see {}/NAME.log): {}\n", output.string(),

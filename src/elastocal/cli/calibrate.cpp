@@ -67,13 +67,13 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
           "--marker-places is about markers in recordings without contact and instruments; with "
           "them, mounting_sd_mm of the instrument says how well its place is known");
     }
-    ReadMarkerPlaces(options.marker_places, project);  // refused before what takes long
+    ReadMarkerPlaces(options.marker_places, project);  // refused before long computations
     inputs.emplace_back(options.marker_places);
   }
   OutputSet outputs;
   if (!options.prior.empty()) {
     const CalibrationFiles earlier = FindCalibrationFiles(options.prior);
-    ReadCalibrationFiles(earlier);  // refused before anything is read that takes long
+    ReadCalibrationFiles(earlier);  // refused before long reading
     inputs.insert(inputs.end(), {earlier.calibration, earlier.covariance});
   }
   outputs.Protect(inputs);
@@ -81,7 +81,7 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   DeclareJson(options.common.json_file, outputs);
   outputs.Prepare();
 
-  // Large recordings take a while: their checksums are made on another thread.
+  // Checksums of large recordings take a while and are computed on another thread.
   auto inputs_read = std::async(std::launch::async, RecordInputs, inputs);
   CalibrationRun run;
   CommandResult result = project.contact ? CalibrateByContacts(options, project, recordings)
@@ -102,7 +102,7 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
 
 namespace {
 
-/// What is calibrated from what, and where to.
+/// Adds the inputs and the output.
 void AddInputs(CLI::App& command, CalibrateOptions& options) {
   command.add_option("project", options.project, "Project file (YAML)")->required();
   command
@@ -135,7 +135,7 @@ void AddFolds(CLI::App& command, CalibrateOptions& options) {
       ->capture_default_str();
 }
 
-/// What is known beside the recording: an earlier calibration, places of markers, mistakes.
+/// Adds prior knowledge: an earlier calibration, marker positions, mistakes.
 void AddKnowledge(CLI::App& command, CalibrateOptions& options) {
   CLI::Option* prior =
       command

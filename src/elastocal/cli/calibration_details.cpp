@@ -29,7 +29,7 @@ std::vector<int> WithStatus(const CalibrationResult& result, ParameterStatus sta
   return which;
 }
 
-/// What follows a list of which only the first are shown.
+/// Text after a list of which only the first entries are shown.
 std::string More(std::size_t count) {
   return count > kMostListed ? fmt::format("  and {} more in summary.json\n", count - kMostListed)
                              : "";
@@ -92,7 +92,8 @@ std::string ExcitationText(const CalibrationRun& run) {
       Names(result, HardlyExcited(result.model.parameters, excitation)));
 }
 
-/// Pairs of waist and markers, which have the strongest correlations, say little of the robot.
+/// Text on correlations between parameters of the robot. Pairs of waist and markers, which are
+/// correlated most, are left out because they tell little about the robot.
 std::string Correlations(const CalibrationResult& result) {
   const auto name = [&](int i) { return result.model.parameters[i].name; };
   std::vector<Correlation> pairs = result.correlations;

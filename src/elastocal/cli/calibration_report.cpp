@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kMostParameters = 10;
 constexpr std::size_t kMostNamed = 5;
 
-/// Before all else: what the verdict does not know.
+/// Text on trials that are not used, which the verdict does not cover.
 std::string RefusedText(const CalibrationRun& run) {
   std::string text;
   for (const TrialSummary& trial : run.trials) {
@@ -32,7 +32,8 @@ std::string RefusedText(const CalibrationRun& run) {
   return text;
 }
 
-/// The held-out figures beside those of all sightings; empty where none was left out.
+/// Held-out errors without outliers, next to those of all observations; empty where no observation
+/// is an outlier.
 std::string WithoutOutliersText(const CalibrationRun& run) {
   const std::size_t left_out = run.comparison.largest().outliers.size();
   if (run.held_out || run.cross_validation.folds == 0 || left_out == 0) return "";
@@ -49,7 +50,8 @@ std::string WithoutOutliersText(const CalibrationRun& run) {
   return text;
 }
 
-/// Whether a joint slid far enough to tell the scale of the cameras: its gear is not estimated.
+/// Whether a prismatic joint moved far enough to determine the scale of the cameras, because its
+/// gear is not estimated.
 bool SlideTellsScale(const CalibrationRun& run) {
   constexpr double kFar = 0.1;  // m
   const ErrorModel& model = run.comparison.largest().model;
@@ -61,9 +63,10 @@ bool SlideTellsScale(const CalibrationRun& run) {
   });
 }
 
-/// A scale of the cameras is a robot of another size: no residual shows it. Where neither a known
-/// length nor a slide tells it, what the robot's own lengths leave open, if that is more than the
-/// error that the verdict states; else empty.
+/// A wrong scale of the cameras looks like a robot of another size and leaves no residual. If
+/// neither a known length nor a prismatic joint determines the scale, the text states the range
+/// that the robot's own lengths leave open, if that is more than the error in the verdict; else
+/// empty.
 std::string ScaleText(const CalibrationRun& run) {
   if (!run.common_scale || ScaleIsKnown(run.trials) || SlideTellsScale(run)) return "";
   const auto [least, most] = CompatibleScales(*run.common_scale);
@@ -79,8 +82,7 @@ std::string ScaleText(const CalibrationRun& run) {
       1.0 + least, 1.0 + most, reach, 1e3 * open);
 }
 
-/// Where the errors of the verdict lie if many such postures are left out, and what they do not
-/// say.
+/// Intervals of the held-out errors in the verdict, and what these errors do not cover.
 std::string HeldOutText(const CalibrationRun& run) {
   const Deployment& deployment = run.deployment;
   const auto between = [](const RmseInterval& interval) {
@@ -99,7 +101,7 @@ std::string HeldOutText(const CalibrationRun& run) {
          "recording.\n";
 }
 
-/// One sentence for whoever reads no table.
+/// The verdict in one sentence.
 std::string VerdictText(const CalibrationRun& run) {
   if (!run.verdict.objections.empty()) {
     return "Verdict: do not deploy. " + run.verdict.objections.front() + "\n";
@@ -125,8 +127,9 @@ std::string VerdictText(const CalibrationRun& run) {
          ScaleText(run);
 }
 
-/// Where bodies scatter more than their markers do; else empty. Positions that are commanded, a
-/// robot that swings and what no model has are noise of each posture, and cannot be told apart.
+/// Text where bodies scatter more than their markers do; else empty. Positions that are commanded
+/// instead of measured, a robot that swings, and effects that no model describes all add noise to
+/// each posture and cannot be told apart.
 std::string BodyNoiseText(const Noise& noise) {
   const auto largest = [&](NoiseSource source) {
     double most = 0.0;
@@ -158,7 +161,7 @@ std::string Overview(const CalibrationRun& run) {
       BodyNoiseText(result.noise));
 }
 
-/// RMSE and largest distance of each model, of whatever it was judged on.
+/// Table of RMSE and largest distance of each model.
 std::string ModelTable(const CalibrationRun& run) {
   const int folds = run.cross_validation.folds;
   const bool knows_waist =
@@ -192,7 +195,7 @@ std::string ModelTable(const CalibrationRun& run) {
          table.Render();
 }
 
-/// That the project's places of markers are good enough to say so.
+/// Text that the project's marker positions are good enough for a narrower prior.
 std::string NominalPlacesText(const NominalPlaces& places) {
   if (!places.worth_telling()) return "";
   return fmt::format(
@@ -203,7 +206,7 @@ std::string NominalPlacesText(const NominalPlaces& places) {
       1e3 * places.sd, places.directions);
 }
 
-/// What no error of markers shows: how far the ends of limbs may be from where the URDF has them.
+/// Expected errors of the ends of limbs, which no marker errors show.
 std::string FramesText(const CalibrationRun& run) {
   if (run.frames.empty()) return "";
   TextTable table({"end of a limb", "position mm", "attitude deg"});
@@ -218,8 +221,8 @@ std::string FramesText(const CalibrationRun& run) {
          table.Render() + NominalPlacesText(AssessNominalPlaces(run.comparison.largest()));
 }
 
-/// Parameters of the robot that differ from nominal at 95 %, the furthest first: in units of what
-/// is usual for their kind, so that angles, lengths and compliances can stand in one order.
+/// Parameters of the robot that differ from nominal at 95 %, the furthest first. They are compared
+/// in units that are usual for their kind, so that angles, lengths and compliances have one order.
 std::vector<int> Remarkable(const CalibrationResult& result) {
   const Prior usual;
   std::vector<int> order;
@@ -244,7 +247,7 @@ std::string ParametersText(const CalibrationResult& result) {
          EstimateTable(result, order);
 }
 
-/// The most frequent first: "a 12, b 3 and 4 more".
+/// Counts as text, the most frequent first: "a 12, b 3 and 4 more".
 std::string Counts(const std::map<std::string, int>& counts) {
   std::vector<std::pair<std::string, int>> order(counts.begin(), counts.end());
   std::stable_sort(order.begin(), order.end(),
@@ -315,7 +318,7 @@ std::string LookAt(const CalibrationRun& run) {
 }  // namespace
 
 std::string DescribeRun(const CalibrationRun& run, bool verbose) {
-  // Estimates that a named mistake has spoilt would only mislead.
+  // Estimates that a named mistake has spoilt would mislead.
   const bool spoilt = !run.faults.empty() && !verbose;
   const std::string estimates =
       spoilt ? "" : FramesText(run) + ParametersText(run.comparison.largest());

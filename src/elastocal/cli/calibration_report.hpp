@@ -7,8 +7,8 @@
 
 namespace elastocal::cli {
 
-/// A calibration on one screen: the verdict; all models side by side; the ten parameters that are
-/// furthest from nominal; what looks wrong. `verbose` adds all that DescribeDetails says.
+/// A calibration on one screen: the verdict, all models side by side, the ten parameters furthest
+/// from nominal, and what looks wrong. `verbose` adds the text of DescribeDetails.
 std::string DescribeRun(const CalibrationRun& run, bool verbose);
 
 }  // namespace elastocal::cli

@@ -32,7 +32,7 @@ std::string PlaceOf(const Recording& recording, Eigen::Index posture) {
              : fmt::format("line {}", recording.line[static_cast<std::size_t>(posture)]);
 }
 
-/// Postures that leave more than they should, the worst first.
+/// Describes postures with too large errors, the worst first.
 std::vector<std::string> FarPostures(const CheckRun& run) {
   constexpr std::size_t kMostFar = 5;
   std::vector<Eigen::Index> far;
@@ -50,7 +50,7 @@ std::vector<std::string> FarPostures(const CheckRun& run) {
   return texts;
 }
 
-/// Moved joints are not named beside errors that they do not explain.
+/// Text for errors that moved joints do not explain; these joints are then not named.
 std::string Unexplained(const CheckRun& run) {
   std::string text = fmt::format(
       "Not explained: even if every joint may have moved, the robot errs by {} mm here, where the "

@@ -9,13 +9,13 @@ namespace elastocal::cli {
 
 struct CommonOptions;
 
-/// What a command has found: what it writes and what it says.
+/// Result of a command: the files it writes and the texts it prints.
 struct CommandResult {
-  std::map<std::string, std::string> files;  ///< text by name
-  std::string json;                          ///< for --json
+  std::map<std::string, std::string> files;  ///< contents by name
+  std::string json;                          ///< text for --json
   std::string text;
   std::vector<std::string> warnings, errors;
-  bool fine = false;  ///< exit code 0, else 4
+  bool fine = false;  ///< true: exit code 0; false: 4
 
   /// Prints text, warnings and errors.
   void Print(const CommonOptions& options) const;

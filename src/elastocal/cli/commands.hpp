@@ -22,42 +22,42 @@ enum ExitCode {
   kInternal = 1,      ///< a defect of the program
 };
 
-/// Options that every command has, but for the seed of those that draw nothing.
+/// Options that all commands share; commands that draw nothing have no seed.
 struct CommonOptions {
   std::string json_file;
   std::optional<std::uint64_t> seed;  ///< given by the user
   bool quiet = false;
   bool verbose = false;
 
-  /// Whether standard output is for people: not with --quiet, nor when the JSON goes there.
+  /// Standard output is not for people: with --quiet, or if the JSON goes there.
   bool Silent() const { return quiet || json_file == "-"; }
 };
 
-/// All of them, or all but the seed.
+/// Add all of these options, or all but the seed.
 void AddCommonOptions(CLI::App& command, CommonOptions& options);
 void AddOutputOptions(CLI::App& command, CommonOptions& options);
 
-/// The calibration that a command puts to use, and the project it belongs to.
+/// Adds options for the calibration that a command uses and for its project.
 void AddCalibratedRobot(CLI::App& command, std::string& calibration, std::string& project);
 
-/// A project, a calibration of its robot, and the recording that it is applied to; for validate,
-/// several tables of observations are one recording.
+/// Adds arguments for a project, a calibration of its robot, and the recording to which it is
+/// applied. With `tables` (for validate), several tables of observations form one recording.
 void AddAppliedCalibration(CLI::App& command, std::string& project, std::string& calibration,
                            std::vector<std::string>& recording, bool tables = false);
 
-/// Mistakes of a recording to be corrected, see AcceptMistakes.
+/// Adds the option that names mistakes of a recording to be corrected, see AcceptMistakes.
 void AddAcceptOption(CLI::App& command, std::vector<std::string>& names);
 
-/// What a parsed command line is to do; the result is the exit code.
+/// What a parsed command line does; returns the exit code.
 using Action = std::function<int()>;
 
-/// Parses and runs a command line (without the program's name). Gives the exit code.
+/// Parses and runs a command line (without the program's name). Returns the exit code.
 int RunCommandLine(const std::vector<std::string>& arguments);
 
-/// What is wrong with the words of a command line, which is not run; empty: nothing.
+/// Describes what is wrong with the words of a command line, without running it; empty: nothing.
 std::string UsageErrorOf(std::vector<std::string> words);
 
-/// Each adds its command; `action` is set when the command is on the command line.
+/// Each function adds a command. `action` is set when that command is on the command line.
 void AddInit(CLI::App& app, Action& action);
 void AddInspect(CLI::App& app, Action& action);
 void AddCalibrate(CLI::App& app, Action& action);

@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Units that people use, as InUserUnits has them.
+/// Units for people, as in InUserUnits.
 struct UserScale {
   double factor;
   std::string unit;
@@ -41,7 +41,7 @@ std::string MoreRows(int all, int shown) {
   return all > shown ? fmt::format("  and {} more: --verbose\n", all - shown) : "";
 }
 
-/// The most significant first; `most` rows, or those of all joints that moved.
+/// Table of joints, the most significant first: the first `most` rows, and all joints that moved.
 std::string JointTable(const CalibrationComparison& comparison, int most) {
   TextTable table({"joint", "parameters", "F", "p", "p of all joints", "verdict"});
   int rows = 0;
@@ -56,8 +56,8 @@ std::string JointTable(const CalibrationComparison& comparison, int most) {
   return table.Render() + MoreRows(static_cast<int>(comparison.joints.size()), rows);
 }
 
-/// Joint by joint, the most significant first, and so within each; `most` rows, and those of
-/// joints that moved which differ.
+/// Table of parameters by joint, the most significant first, also within a joint: the first
+/// `most` rows, and the significant rows of joints that moved.
 std::string ParameterTable(const CalibrationComparison& comparison, int most) {
   TextTable table({"parameter", "unit", "A", "B", "B - A", "sd", "95 % interval", ""});
   int rows = 0, all = 0;
@@ -78,7 +78,7 @@ std::string ParameterTable(const CalibrationComparison& comparison, int most) {
   return table.Render() + MoreRows(all, rows);
 }
 
-/// One line a reason.
+/// Text on what was not compared, one line for each reason.
 std::string NotComparedText(const CalibrationComparison& comparison) {
   std::vector<std::pair<std::string, std::vector<Parameter>>> groups;
   for (const NotCompared& one : comparison.not_compared) {
@@ -110,7 +110,7 @@ std::vector<std::string> MovedJoints(const CalibrationComparison& comparison) {
   return names;
 }
 
-/// What else would explain that joints seem to have moved.
+/// Text on other explanations for joints that seem to have moved.
 std::string OtherExplanations(const CalibrationComparison& comparison) {
   std::string text;
   for (const JointDifference& joint : comparison.joints) {

@@ -11,22 +11,22 @@
 
 namespace elastocal::cli {
 
-/// What a person should read of a comparison: the conclusion, joints and parameters by significance
-/// (the first ten and what moved; `verbose`: all), what could not be compared. Degrees and mm.
+/// A comparison as text: the conclusion, joints and parameters by significance (the first ten and
+/// those that moved; `verbose`: all), and what could not be compared. In degrees and mm.
 std::string DescribeComparison(const CalibrationEstimate& a, const CalibrationEstimate& b,
                                const CalibrationComparison& comparison,
                                const ComparisonOptions& options, bool verbose);
 
-/// The same for programs, SI (docs/formats.md).
+/// The comparison as JSON, SI (docs/formats.md).
 nlohmann::ordered_json MakeComparisonJson(const CalibrationEstimate& a,
                                           const CalibrationEstimate& b,
                                           const CalibrationComparison& comparison,
                                           const ComparisonOptions& options);
 
-/// A table of the springs of soles; empty without any.
+/// Table of the differences of soles; empty without any.
 std::string DescribeSoleChanges(const std::vector<SoleDifference>& soles);
 
-/// The same for programs: `soles` of the comparison.
+/// These differences as JSON: `soles` of the comparison.
 nlohmann::ordered_json SoleDifferencesJson(const std::vector<SoleDifference>& soles);
 
 }  // namespace elastocal::cli

@@ -31,7 +31,7 @@ struct CompensateOptions {
   double ease_s = 0.0;
 };
 
-/// By limb, where any that does not yield has more left than nothing.
+/// Table by limb, if any limb that does not yield has a deviation.
 std::string DescribeLeft(const CompensatedMotion& result) {
   if (std::none_of(result.left.begin(), result.left.end(),
                    [](const LeftAtLimb& one) { return !one.yields && one.samples > 0; })) {
@@ -53,7 +53,8 @@ std::string DescribeLeft(const CompensatedMotion& result) {
          "A degree counts 5.2 mm. (yields): fewer than six joints, which cannot correct all\n\n";
 }
 
-/// What the calibration does not know, which is in none of the other figures.
+/// Expected errors because the calibration does not know the geometry better; they are in none of
+/// the other figures.
 std::string DescribeExpected(const std::vector<ExpectedAtLimb>& expected) {
   if (expected.empty()) {
     return "How far the real robot will be from that is not known: the calibration has no "

@@ -43,7 +43,7 @@ std::string BashValues(const CommandWords& command) {
   return text;
 }
 
-/// Text within the brackets of a zsh specification, in single quotes.
+/// A text for use within the brackets of a zsh specification, in single quotes.
 std::string ZshText(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -72,7 +72,7 @@ std::string ZshAction(const OptionWords& option) {
   }
 }
 
-/// Specifications of options as `_arguments` takes them, a line each name.
+/// Specifications of options for `_arguments`, one line for each name.
 std::string ZshOptions(const std::vector<OptionWords>& options, const std::string& indent) {
   std::string text;
   for (const OptionWords& option : options) {

@@ -7,11 +7,11 @@
 
 namespace elastocal::cli {
 
-/// Completion of commands, options, their values and files as a script for bash, which needs no
-/// package beside it.
+/// Script for bash that completes commands, options, their values and files. It needs no other
+/// package.
 std::string BashCompletion(const ProgramWords& program);
 
-/// The same as the file `_elastocal` for a folder of zsh's fpath.
+/// The same for zsh: contents of the file `_elastocal` in a folder of fpath.
 std::string ZshCompletion(const ProgramWords& program);
 
 }  // namespace elastocal::cli

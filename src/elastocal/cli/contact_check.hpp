@@ -10,15 +10,17 @@
 
 namespace elastocal::cli {
 
+/// Options of `check`.
 struct CheckCommand {
   CommonOptions common;
   std::string project, calibration;
-  std::string output;                  ///< posture file; empty: none
-  std::vector<std::string> recording;  ///< one; of tables of observations and of corners several
+  std::string output;  ///< path of the posture file; empty: none
+  /// One recording; several files if these are tables of observations and of corners.
+  std::vector<std::string> recording;
   CheckOptions check;
 };
 
-/// `check` for a project with contact or instruments.
+/// Runs `check` for a project with contact or instruments.
 CommandResult CheckByContacts(const CheckCommand& command, const Project& project);
 
 }  // namespace elastocal::cli

@@ -40,7 +40,7 @@ void AddFigures(const std::string& name, const ObservedRobot& model,
 const std::vector<std::string> kFigureHeader = {"touches",    "number",     "height mm",
                                                 "tilt x deg", "tilt y deg", "max height mm"};
 
-/// Root mean squares of all instruments that are no plates; empty where there are none.
+/// Text with the root mean square errors of all instruments but plates; empty where there are none.
 std::string InstrumentText(const ObservedRobot& model, const ObservationFigures& uncalibrated,
                            const ObservationFigures& calibrated) {
   TextTable table({"instrument", "number", "rms of a coordinate", "uncalibrated", "calibrated"});
@@ -72,7 +72,7 @@ std::string ComplianceText(const CalibrationResult& result) {
   return text;
 }
 
-/// Joint offsets that differ from zero: turns about the axis, of a prismatic joint ways along it.
+/// Text on joint offsets that differ from zero: rotations, or translations of prismatic joints.
 std::string OffsetText(const CalibrationResult& result) {
   std::string text;
   for (int i = 0; i < result.model.parameter_count(); ++i) {
@@ -90,7 +90,7 @@ std::string OffsetText(const CalibrationResult& result) {
   return text.empty() ? "  none\n" : text;
 }
 
-/// Causes beyond geometry and springs that the model has, with their estimates.
+/// Text on causes beyond geometry and springs in the model, with their estimates.
 std::string CausesText(const ContactRun& run) {
   std::string text = "Beyond geometry and springs\n";
   for (int i = 0; i < run.result.model.parameter_count(); ++i) {

@@ -11,12 +11,12 @@
 
 namespace elastocal::cli {
 
-/// `calibrate` for a project with contact or instruments, whose recordings are tables of
+/// Runs `calibrate` for a project with contact or instruments, whose recordings are tables of
 /// observations.
 CommandResult CalibrateByContacts(const CalibrateOptions& options, const Project& project,
                                   const std::vector<std::filesystem::path>& recordings);
 
-/// `validate` for such a project. `accept`: mistakes that are corrected first.
+/// Runs `validate` for such a project. `accept` names mistakes that are corrected first.
 CommandResult ValidateByContacts(const Project& project, const std::filesystem::path& calibration,
                                  const std::vector<std::filesystem::path>& recordings,
                                  bool refit_table, const std::vector<std::string>& accept);

@@ -27,11 +27,11 @@ namespace {
 struct DemoOptions {
   CommonOptions common;
   std::string output = "elastocal_demo";
-  int count = 0;  ///< postures of each chain; 0: as many as it takes
+  int count = 0;  ///< postures of each chain; 0: as many as needed
   bool quick = false;
 };
 
-/// The embedded models, from where the program is.
+/// Folder of the models that are installed with the program.
 std::filesystem::path ModelsFolder() {
   const auto program = std::filesystem::read_symlink("/proc/self/exe");
   return std::filesystem::weakly_canonical(program.parent_path() / ELASTOCAL_MODELS);
@@ -39,7 +39,7 @@ std::filesystem::path ModelsFolder() {
 
 using Words = std::vector<std::string>;
 
-/// Prints a command as a user would give it, and does it.
+/// Prints a command as a user would type it, and runs it.
 int RunShown(Words command, const DemoOptions& options) {
   const bool silent = options.common.Silent();
   Print(silent, fmt::format("\n$ elastocal {}\n", fmt::join(command, " ")));
@@ -47,7 +47,7 @@ int RunShown(Words command, const DemoOptions& options) {
   return RunCommandLine(command);
 }
 
-/// Simulations that run while the next motions are planned, as `simulate --motion` would run them.
+/// Simulations that run while the next motions are planned, as by `simulate --motion`.
 class Simulations {
  public:
   Simulations(const std::string& project, std::uint64_t seed) : project_(project), seed_(seed) {}
@@ -69,7 +69,7 @@ class Simulations {
     runs_.push_back({std::move(words), folder, std::async(std::launch::async, play)});
   }
 
-  /// Waits for all, and prints what each command would have printed, in turn.
+  /// Waits for all simulations, and prints their output in turn.
   void Finish(bool silent) {
     const Progress progress = TerminalProgress("simulated trial", silent);
     for (Run& run : runs_) {
@@ -106,8 +106,8 @@ class Simulations {
   std::string project_;
   std::uint64_t seed_;
   std::mutex guard_;
-  std::map<std::size_t, std::pair<int, int>> counts_;  ///< trials done and in all, by run
-  std::vector<Run> runs_;  ///< last: their threads end before the rest goes
+  std::map<std::size_t, std::pair<int, int>> counts_;  ///< trials done and all trials, by run
+  std::vector<Run> runs_;  ///< last, because their threads must end before the other members do
 };
 
 /// Throws InputError at once where `--json` cannot be written: `calibrate` would see it only after
@@ -118,8 +118,8 @@ void RequireJsonPlace(const std::string& json_file) {
   outputs.Prepare();
 }
 
-/// From the robot's description to a calibrated one: the commands that a user would give. Each
-/// simulation begins when its motion is planned, and runs beside what comes next.
+/// Runs the commands from a robot description to a calibrated one. Each simulation begins when its
+/// motion is planned, and runs beside the next steps.
 int RunCompleteChain(const std::string& project, const DemoOptions& options) {
   RequireJsonPlace(options.common.json_file);
   const auto in = [&](const std::string& name) {
@@ -161,7 +161,7 @@ int RunCompleteChain(const std::string& project, const DemoOptions& options) {
   return RunShown(deploy, options);
 }
 
-/// The last line: what to look at.
+/// Prints the last line, which says what to look at.
 void PointToReport(const DemoOptions& options) {
   const std::filesystem::path report =
       std::filesystem::absolute(std::filesystem::path(options.output) / "report.html");

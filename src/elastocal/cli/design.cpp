@@ -34,15 +34,15 @@ struct DesignCommand {
   int count = 0, max_count = PlateauRule().max_postures, block = 4;
   double plateau = PlateauRule().tolerance;
   bool elastic = false, no_certificate = false, curves = false;
-  std::string after;  ///< an earlier calibration; empty: none
+  std::string after;  ///< path of an earlier calibration; empty: none
   bool check = false;
   std::vector<std::string> joints;
   double days = 1.0, marker_noise_mm = 0.3, limit_margin_deg = 0.0;
-  /// Those given of the options that design by observations (contact, instruments) does not know.
+  /// Given options that do not apply to a design by observations (contact, instruments).
   std::vector<std::string> of_chains;
 };
 
-/// How postures are searched for chain by chain, but after a calibration.
+/// Options of the search chain by chain, which do not apply after a calibration.
 constexpr std::array kSearchOptions = {"--algorithm", "--criterion",     "--curves",
                                        "--elastic",   "--max-count",     "--plateau",
                                        "--block",     "--no-certificate"};
@@ -83,7 +83,7 @@ std::string FollowUpTable(const FollowUpDesign& design) {
   return "Postures after a calibration\n" + chains.Render() + "\n" + zeros.Render();
 }
 
-/// Postures that follow a calibration: a posture file alone.
+/// Designs postures after a calibration, and writes only a posture file.
 int FollowUp(const DesignCommand& command, const Project& project) {
   CheckHasMarkers(project);
   const CalibrationFiles files = FindCalibrationFiles(command.after);

@@ -7,7 +7,7 @@
 
 namespace elastocal::cli {
 
-/// One row a chain.
+/// Table with one row for each chain.
 std::string DesignTable(const PostureDesign& result);
 
 }  // namespace elastocal::cli

@@ -13,7 +13,7 @@
 namespace elastocal::cli {
 namespace {
 
-/// As the paper calls the models; the one that it does not have by what it estimates.
+/// Name of a model in the paper; for the model that the paper lacks, what it estimates.
 const char* PaperName(ModelKind kind) {
   switch (kind) {
     case ModelKind::kUncalibrated:
@@ -30,7 +30,7 @@ const char* PaperName(ModelKind kind) {
   return "";
 }
 
-/// The models of a table, the one with most parameters first, as the paper has them.
+/// The models of a table in the paper's order: the one with most parameters first.
 std::vector<ModelKind> KindsOf(const ErrorTable& table) {
   std::set<ModelKind> kinds;
   for (const ErrorTableRow& row : table.rows) {

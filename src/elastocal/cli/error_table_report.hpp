@@ -7,9 +7,9 @@
 
 namespace elastocal::cli {
 
-/// Table 2 of the paper, mm: a row a group of chains and case (SW sinusoidal motions, RP random
-/// postures, RM repeatability motion), RMSE of distances and the largest by model (FCM full, GCM
-/// geometric, NCM not calibrated), then the groups as a whole and the mean.
+/// Table 2 of the paper, mm. A row for each group of chains and case (SW sinusoidal motions, RP
+/// random postures, RM repeatability motion) has the RMSE and the largest of the distances by model
+/// (FCM full, GCM geometric, NCM not calibrated). Then follow the groups as a whole and the mean.
 std::string DescribeErrorTable(const ErrorTable& table);
 
 }  // namespace elastocal::cli

@@ -51,7 +51,8 @@ std::string DescribeExecutions(const std::vector<Execution>& executions) {
     if (one.refused.empty()) continue;
     const std::string line =
         fmt::format("{} was not played: {}\n", DeployName(one.as), one.refused);
-    if (refused.find(line) == std::string::npos) refused += line;  // with and without a stabiliser
+    // The same with and without a stabiliser.
+    if (refused.find(line) == std::string::npos) refused += line;
   }
   return refused + "Distance from the plan, root mean square (and largest)\n" + table.Render() +
          "shift: of the root link by the stabiliser; zmp: least distance of the zero-moment point "

@@ -8,10 +8,10 @@
 
 namespace elastocal::cli {
 
-/// A line about joints of which a motion says nothing; empty where there are none.
+/// A line that names the joints that a motion lacks; empty if there are none.
 std::string DescribeOpenJoints(const std::vector<std::string>& names);
 
-/// A table of what each way to know the robot gave.
+/// Table of the errors for each kind of knowledge about the robot.
 std::string DescribeExecutions(const std::vector<Execution>& executions);
 
 }  // namespace elastocal::cli

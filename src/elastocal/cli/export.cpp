@@ -25,7 +25,7 @@ struct ExportCommand {
   ExportOptions options;
 };
 
-/// A format in a few words.
+/// Description of a format in a few words.
 std::string WhatIs(const std::string& name) {
   const std::vector<ExportFormat> formats = ExportFormats();
   return std::ranges::find(formats, name, &ExportFormat::name)->what;
@@ -52,7 +52,7 @@ int Export(const ExportCommand& command) {
   return kFine;
 }
 
-/// Which calibration, in which form, to which file.
+/// Adds the calibration, the format and the file.
 void AddWhatAndWhere(CLI::App& command, ExportCommand& options) {
   AddCalibratedRobot(command, options.calibration, options.project);
   std::string help = "One of";
@@ -71,7 +71,7 @@ void AddWhatAndWhere(CLI::App& command, ExportCommand& options) {
       ->type_name("FILE");
 }
 
-/// Which joints stay nominal, in any format.
+/// Adds options that select joints, for any format.
 void AddChoiceOfJoints(CLI::App& command, ExportCommand& options) {
   command
       .add_option("--min-significance", options.options.least_significance,
@@ -86,7 +86,7 @@ void AddChoiceOfJoints(CLI::App& command, ExportCommand& options) {
       ->type_name("MM");
 }
 
-/// What single formats need.
+/// Adds options of single formats.
 void AddOptionsOfFormats(CLI::App& command, ExportOptions& options) {
   command
       .add_option("--prefix", options.prefix,

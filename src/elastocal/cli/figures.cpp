@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kMostDecimals = 9;
 
-/// The decimal place of the second significant digit, of the number as it is rounded: 2 of 0.0996,
-/// which is printed as 0.10. Negative left of the point.
+/// Decimal place of the second significant digit after rounding: 2 for 0.0996, which is printed as
+/// 0.10. Negative left of the point.
 int SecondDigit(double positive) {
   const std::string text = fmt::format("{:.1e}", positive);
   return 1 - std::stoi(text.substr(text.find('e') + 1));

@@ -31,13 +31,14 @@ struct InitCommand {
   bool force = false;
 };
 
-/// A project that somebody may have corrected is not replaced without being asked.
+/// Refuses to replace a project unless forced, because somebody may have corrected it.
 void RefuseToReplace(const std::filesystem::path& file, bool force) {
   if (force || FileTypeOf(file) == std::filesystem::file_type::not_found) return;
   throw InputError(file.string() + " is there already; --force replaces it");
 }
 
-/// Where the robot description will be: itself, if it is in the folder already and needs no links.
+/// Path of the robot description to be used: the given file, if it is already in the folder and
+/// needs no added links.
 std::filesystem::path PlaceOfUrdf(const std::filesystem::path& urdf,
                                   const std::filesystem::path& folder, bool changed) {
   const std::filesystem::path copy = folder / urdf.filename();
@@ -47,7 +48,7 @@ std::filesystem::path PlaceOfUrdf(const std::filesystem::path& urdf,
   return folder / (urdf.stem().string() + "_soles" + urdf.extension().string());
 }
 
-/// The folders in an environment variable, with `below` added to each.
+/// Adds the folders in an environment variable, each followed by `below`.
 void AddRoots(const char* variable, const std::filesystem::path& below, MeshPlaces& places) {
   const char* value = std::getenv(variable);
   std::istringstream list(value == nullptr ? "" : value);
@@ -92,7 +93,7 @@ std::string ChainTable(const ProjectDraft& draft) {
   return table.Render();
 }
 
-/// The page that shows the draft. Returns why there is none; empty where there is one.
+/// Writes the page that shows the draft. Returns why there is none; empty where there is one.
 std::string WritePage(const std::filesystem::path& folder) {
   if (PageTemplate().empty()) return kNoPage;
   const std::filesystem::path page = folder / "report.html";

@@ -26,7 +26,7 @@ struct InspectOptions {
 
 constexpr double kDegreesPerRadian = 180.0 / M_PI;
 
-/// Without the minus of a negative zero and of what rounds to zero.
+/// A number with `digits` decimals, without the minus of a zero.
 std::string Fixed(double value, int digits) {
   const std::string text = fmt::format("{:.{}f}", value, digits);
   return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1)
@@ -60,8 +60,8 @@ std::string ParallelAxes(const RobotTree& tree, const std::vector<JointPlacement
   return text.empty() ? "  none\n" : text;
 }
 
-/// Which motor moves which joints by which rod; the motors' positions where the linkage is
-/// assembled.
+/// Table of linkages: which motor moves which joints by which rod, and the positions of the motors
+/// in the assembled linkage.
 std::string LinkageTable(const RobotTree& tree) {
   TextTable table(
       {"linkage", "joints", "motor", "from", "to", "length mm", "assembled at", "errors"});

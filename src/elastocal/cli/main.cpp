@@ -95,7 +95,7 @@ void AddAcceptOption(CLI::App& command, std::vector<std::string>& names) {
 
 namespace {
 
-/// What is wrong with the first word of the command line where it is no command; else empty.
+/// Message if the first word of the command line is no command; else empty.
 std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return "";
   std::vector<std::string> known;
@@ -104,7 +104,7 @@ std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
   return "unknown command '" + std::string(argv[1]) + "'" + DidYouMean(argv[1], known);
 }
 
-/// What the build installs beside the program: its manual page, and completion for shells.
+/// Writes what the build installs beside the program: its manual page, and completion for shells.
 int Generate(const CLI::App& app, const std::string& what) {
   ProgramWords words = ReadWords(app);
   const std::string version = ProgramVersion();
@@ -128,7 +128,7 @@ int Generate(const CLI::App& app, const std::string& what) {
   return kFine;
 }
 
-/// All commands; parsing a command line sets `action`.
+/// Adds all commands; parsing a command line sets `action`.
 void AddCommands(CLI::App& app, Action& action) {
   app.name("elastocal");
   app.set_version_flag("--version", std::string("elastocal ") + ProgramVersion());
@@ -182,10 +182,11 @@ int Run(int argc, char** argv) {
   return action();
 }
 
-/// Whether all that was printed has arrived.
+/// Whether everything that was printed has been written.
 bool Printed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
 
-/// What libraries throw because of an input or an output is no defect of the program.
+/// Runs the program, and reports exceptions of libraries that an input or an output causes; these
+/// are no defects of the program.
 int RunAndExplain(int argc, char** argv) {
   try {
     const int code = Run(argc, argv);
@@ -197,7 +198,7 @@ int RunAndExplain(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     spdlog::error("there is not enough memory for an input of this size");
   } catch (const std::system_error& error) {
-    // Of the file system, with the path, or of standard output.
+    // An error of the file system, with the path, or of standard output.
     spdlog::error("{}", error.what());
   }
   return kBadInput;
@@ -209,7 +210,7 @@ std::string UsageErrorOf(std::vector<std::string> words) {
   CLI::App app(kAbout);
   Action action;
   AddCommands(app, action);
-  std::reverse(words.begin(), words.end());  // as the library takes them
+  std::reverse(words.begin(), words.end());  // the order that the library expects
   try {
     app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
@@ -229,7 +230,7 @@ int RunCommandLine(const std::vector<std::string>& arguments) {
 
 }  // namespace elastocal::cli
 
-/// Messages on standard error, never within a line of standard output or of progress.
+/// Writes messages to standard error, never within a line of standard output or of progress.
 class MessageSink : public spdlog::sinks::stderr_color_sink_mt {
  public:
   void log(const spdlog::details::log_msg& message) override {
@@ -243,13 +244,13 @@ class MessageSink : public spdlog::sinks::stderr_color_sink_mt {
 };
 
 int main(int argc, char** argv) {
-  // Memory that a matrix has left is kept for the next: new pages of the system take time.
+  // Keeps freed memory of matrices for the next ones, because new pages of the system take time.
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
   spdlog::set_default_logger(
       std::make_shared<spdlog::logger>("elastocal", std::make_shared<MessageSink>()));
   spdlog::set_pattern("elastocal: %^%l%$: %v");
-  // Beyond a limit on the size of files a write then fails, with a message, instead of this signal.
+  // Beyond a limit on the size of files, a write then fails with a message instead of this signal.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     return elastocal::cli::RunAndExplain(argc, argv);

@@ -9,8 +9,8 @@
 namespace elastocal::cli {
 namespace {
 
-/// Text as roff reads it: no escapes, no requests at the beginning of a line, hyphens that can be
-/// copied.
+/// Escapes a text for roff: escapes, requests at the beginning of a line, and hyphens, which must
+/// be copyable.
 std::string Escaped(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -35,7 +35,7 @@ std::string RoffSentence(const std::string& text) {
   return Escaped(text) + (ends ? "" : ".");
 }
 
-/// A paragraph with a tag: the option, and what it does.
+/// A tagged paragraph with an option and its description.
 std::string OptionParagraph(const OptionWords& option) {
   std::string tag;
   for (const std::string& name : option.names) tag += (tag.empty() ? "" : ", ") + Bold(name);
@@ -51,7 +51,7 @@ std::string OptionParagraph(const OptionWords& option) {
   return text;
 }
 
-/// The lines below a command's help: sentences, and its example as one types it.
+/// The lines below a command's help: sentences, and its example as typed.
 std::string FooterParagraphs(const std::string& footer) {
   const std::string mark = "Example: ";
   std::string text;

@@ -7,7 +7,7 @@
 
 namespace elastocal::cli {
 
-/// The manual page elastocal(1) as roff source with the macros of man(7).
+/// The manual page elastocal(1) as roff source, with the macros of man(7).
 std::string ManualPage(const ProgramWords& program);
 
 }  // namespace elastocal::cli

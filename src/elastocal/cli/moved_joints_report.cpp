@@ -14,7 +14,7 @@
 namespace elastocal::cli {
 namespace {
 
-constexpr double kLeastShown = 0.01;  // of the probability of a joint
+constexpr double kLeastShown = 0.01;  // smallest probability of a joint that is shown
 constexpr std::size_t kMostShown = 5;
 
 std::string ChangeText(const ParameterChange& change) {
@@ -26,7 +26,7 @@ std::string ChangeText(const ParameterChange& change) {
                      RoundedSd(sd), UserUnit(parameter));
 }
 
-/// Changes of more than two standard deviations, or the largest one.
+/// Text on changes of more than two standard deviations, or else on the largest one.
 std::string ChangesText(const JointSuspect& suspect) {
   std::string text;
   const ParameterChange* largest = nullptr;

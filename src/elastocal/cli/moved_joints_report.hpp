@@ -8,25 +8,26 @@
 
 namespace elastocal::cli {
 
-/// What `check` says of joints: those that have moved and by how much, or which one of several may
-/// have, and the `alternatives` that explain it as well; "Unchanged: ..." with the chance of a
-/// false alarm (`level`) where none has.
+/// The result of `check` on joints: those that have moved and by how much, or those of which one
+/// may have moved, and the `alternatives` that explain it equally well. "Unchanged: ..." with the
+/// probability of a false alarm (`level`) where none has moved.
 std::string DescribeMoved(const JointCheck& check, const std::vector<std::string>& alternatives,
                           double level);
 
-/// What is said instead where the alternatives explain it better.
+/// The result if the alternatives explain it better.
 std::string DescribeWrongRecording(const std::vector<std::string>& alternatives);
 
-/// The joints that may have moved, the most probable first.
+/// Table of the joints that may have moved, the most probable first.
 std::string SuspectTable(const JointCheck& check);
 
-/// A probability as tables have it.
+/// A probability in the form used in tables.
 std::string Probability(double p);
 
-/// On how many links the markers stayed, and on which they did not.
+/// Text that says on how many links the markers stayed, and on which they did not.
 std::string DescribeMarkers(const std::vector<LinkMarkers>& links);
 
-/// How small a change of a joint's zero these postures show, and joints of which they show none.
+/// Text on the smallest change of a joint's zero that these postures show, and on joints of which
+/// they show none.
 std::string DescribeSensitivity(const JointCheck& check);
 
 }  // namespace elastocal::cli

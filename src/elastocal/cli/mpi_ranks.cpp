@@ -12,7 +12,7 @@
 
 namespace elastocal::cli {
 
-/// Another rank.
+/// A slot on another rank.
 class RankSlot : public TaskSlot {
  public:
   RankSlot(MpiRanks& ranks, int rank) : ranks_(ranks), rank_(rank) {}
@@ -39,7 +39,7 @@ namespace fs = std::filesystem;
 
 constexpr double kDismissed = -1.0;
 
-/// Beside the program as it is built, or where it is installed.
+/// Path of the MPI module: beside the built program, or where it is installed.
 fs::path FindModule() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
@@ -60,11 +60,11 @@ void Load(void* module, const char* name, Function& function) {
 }  // namespace
 
 std::unique_ptr<MpiRanks> MpiRanks::Join() {
-  // Open MPI's; a run without mpirun needs no MPI.
+  // Set by Open MPI; a run without mpirun needs no MPI.
   if (std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr) return nullptr;
   const fs::path file = FindModule();
-  // The solver of Ipopt brings functions of the same names, which only look like MPI:
-  // RTLD_DEEPBIND.
+  // The solver of Ipopt contains functions with the names of MPI that do nothing: RTLD_DEEPBIND
+  // prefers those of the module.
   void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_DEEPBIND);
   if (module == nullptr) throw InputError(file.string() + ": cannot be loaded: " + dlerror());
   Functions functions;

@@ -9,11 +9,11 @@
 
 namespace elastocal::cli {
 
-/// The processes that mpirun has started. Rank 0 has the queue; each rank does one task at a time.
+/// The processes that mpirun started. Rank 0 has the queue; each rank does one task at a time.
 class MpiRanks {
  public:
-  /// Nothing where mpirun has not started this process. Throws InputError where it has, but the
-  /// module for MPI was not built or cannot be loaded.
+  /// Joins the other processes; null where mpirun did not start this process. Throws InputError
+  /// where it did, but the module for MPI was not built or cannot be loaded.
   static std::unique_ptr<MpiRanks> Join();
 
   ~MpiRanks();
@@ -23,11 +23,11 @@ class MpiRanks {
   int rank() const { return rank_; }
   int size() const { return size_; }
 
-  /// Of rank 0: a slot for each other rank, which must not outlive this.
+  /// For rank 0: a slot for each other rank. The slots must not outlive this object.
   std::vector<std::unique_ptr<TaskSlot>> OtherRanks();
-  /// Of rank 0: the others may go home.
+  /// For rank 0: ends the service of the other ranks.
   void Dismiss() const;
-  /// Of another rank: does what rank 0 gives it, until it is dismissed.
+  /// For other ranks: does the tasks that rank 0 gives, until it is dismissed.
   void Serve(TaskSlot& slot) const;
 
  private:

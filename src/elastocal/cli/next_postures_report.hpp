@@ -8,11 +8,11 @@
 
 namespace elastocal::cli {
 
-/// Which postures to record next; empty where nothing is open. `file`: where they were written to;
-/// empty: nowhere.
+/// Text that says which postures to record next; empty where nothing is open. `file` is the file to
+/// which they were written; empty: none.
 std::string DescribeNext(const Project& project, const NextPostures& next, const std::string& file);
 
-/// The smallest change of a joint's zero that check sees nine times in ten, in units of people.
+/// The smallest change of a joint's zero that check finds nine times in ten, in units for people.
 std::string SmallestChange(const ZeroSensitivity& zero);
 
 }  // namespace elastocal::cli

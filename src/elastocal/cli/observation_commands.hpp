@@ -10,25 +10,25 @@
 
 namespace elastocal::cli {
 
-/// `design` for a project with contact or instruments.
+/// Options of `design` for a project with contact or instruments.
 struct DesignObservationsCommand {
   CommonOptions common;
-  std::string output;      ///< posture file
-  int count = 0;           ///< postures in all; 0: the usual number
-  std::string after = {};  ///< an earlier calibration; empty: none
+  std::string output;      ///< path of the posture file
+  int count = 0;           ///< number of postures altogether; 0: the usual number
+  std::string after = {};  ///< path of an earlier calibration; empty: none
   double days = 1.0;
   bool changes = false;
   std::vector<std::string> joints = {};
 };
 int RunObservationDesign(const DesignObservationsCommand& command, const Project& project);
 
-/// `simulate` for such a project.
+/// Options of `simulate` for such a project.
 struct SimulateObservationsCommand {
   CommonOptions common;
-  std::string output;    ///< folder
-  std::string postures;  ///< posture file; empty: `count` random ones of each kind
+  std::string output;    ///< path of the folder
+  std::string postures;  ///< path of the posture file; empty: `count` random postures of each kind
   int count = 0;         ///< 0: the usual number
-  bool force = false;    ///< replaces recordings that were not simulated
+  bool force = false;    ///< replace recordings that were not simulated
   VirtualExperimentOptions experiment;
 };
 int RunObservationSimulation(const SimulateObservationsCommand& command, const Project& project);

@@ -19,7 +19,7 @@ std::string FoundInstead(const std::string& text, const std::string& expected) {
   return "found " + Quote(text) + "; expected " + expected;
 }
 
-/// The description "from LEAST to MOST" stands in the help; ReadWords looks for it.
+/// The description "from LEAST to MOST" appears in the help, and ReadWords searches for it.
 CLI::Validator NumberFromTo(double least, double most, const char* kind, bool whole) {
   const std::string range = fmt::format("from {:.10g} to {:.10g}", least, most);
   const auto check = [=](std::string& text) {
@@ -31,7 +31,7 @@ CLI::Validator NumberFromTo(double least, double most, const char* kind, bool wh
   return {check, range};
 }
 
-/// "a", "a or b", "a, b or c".
+/// Names as text: "a", "a or b", "a, b or c".
 std::string EitherOf(const std::vector<std::string>& names) {
   std::string list;
   for (std::size_t i = 0; i < names.size(); ++i) {

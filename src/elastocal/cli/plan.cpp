@@ -27,9 +27,9 @@ namespace {
 struct PlanCommand {
   CommonOptions common;
   std::string project, postures, output, trajectory, folder;
-  std::string kind;  ///< of a validation motion; empty: postures are given
+  std::string kind;  ///< kind of a validation motion; empty: postures are given
   std::optional<double> zmp_margin_mm, lift_mm, inset_mm, approach_mm;
-  std::string ros = "2";  ///< whose stamps the trajectory has
+  std::string ros = "2";  ///< version of ROS for the stamps of the trajectory
   bool unbalanced = false, unstabilised = false;
   double limit_margin_deg = 0.0;
   MotionPlanOptions options;
@@ -75,7 +75,7 @@ ValidationKind KindNamed(const std::string& name) {
                             : ValidationKind::kRepeatability;
 }
 
-/// Why the motion is not to be played: said as errors. Whether there is a reason.
+/// Prints as errors why the motion must not be played. Returns whether there is a reason.
 bool Refuse(const MotionPlan& plan, bool unbalanced) {
   for (const std::string& chain : plan.impossible) {
     spdlog::error("chain '{}' has no posture that can be kept and reached", chain);
@@ -93,7 +93,7 @@ bool Refuse(const MotionPlan& plan, bool unbalanced) {
   return refused;
 }
 
-/// Lengths of the command line are in mm.
+/// Converts the options; lengths on the command line are in mm.
 MotionPlanOptions PlanOptions(const PlanCommand& command) {
   MotionPlanOptions options = command.options;
   if (command.zmp_margin_mm) options.limits.zmp_margin = 1e-3 * *command.zmp_margin_mm;
@@ -128,7 +128,7 @@ void PrintPlan(const Project& project, const MotionPlan& plan, const CommonOptio
   }
 }
 
-/// --approach-mm would not do anything where no touch is planned.
+/// Refuses --approach-mm where no touch is planned and it would have no effect.
 void RefuseIdleApproach(const PlanCommand& command, const Project& project) {
   if (command.approach_mm && (!project.contact || !command.kind.empty())) {
     throw InputError(
@@ -201,13 +201,13 @@ CLI::Option* AddNumber(CLI::App& command, const std::string& name, double& value
       ->capture_default_str();
 }
 
-/// Without it, the robot's own size decides.
+/// Adds an option for a length; without it, the robot's size determines the value.
 void AddLength(CLI::App& command, const std::string& name, std::optional<double>& value,
                const char* help) {
   command.add_option(name, value, help)->check(InBounds("plan " + name));
 }
 
-/// Which postures or motion.
+/// Adds options that select postures or a motion.
 void AddWhat(CLI::App& command, PlanCommand& options) {
   auto* postures = command
                        .add_option("--postures", options.postures,
@@ -250,7 +250,7 @@ void AddFiles(CLI::App& command, PlanCommand& options) {
       ->type_name("DIR");
 }
 
-/// Times, and the limits that the motion keeps.
+/// Adds times and limits of the motion.
 void AddLimits(CLI::App& command, PlanCommand& options) {
   MotionPlanOptions& plan = options.options;
   AddNumber(command, "--move-s", plan.plan.path.duration_s, "Time between two postures, s");
@@ -281,7 +281,7 @@ void AddLimits(CLI::App& command, PlanCommand& options) {
             "range: room for `compensate`");
 }
 
-/// Robots that play it, and balance.
+/// Adds options for robots that play the motion, and for balance.
 void AddRobots(CLI::App& command, PlanCommand& options) {
   command
       .add_option("--threads", options.options.threads,

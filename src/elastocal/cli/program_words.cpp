@@ -9,7 +9,7 @@
 namespace elastocal::cli {
 namespace {
 
-/// The text between two marks, of which the second is the next after the first; empty without.
+/// The text between `begin` and the next `end`; empty without them.
 std::string Between(const std::string& text, const std::string& begin, const std::string& end) {
   const std::size_t from = text.find(begin);
   if (from == std::string::npos) return "";
@@ -25,7 +25,8 @@ std::vector<std::string> SplitAtCommas(const std::string& text) {
   return words;
 }
 
-/// CLI11 tells type and checks as one text: "TEXT:{origin,encoder}", "INT:from 2 to 100".
+/// Reads the type and the checks of an option, which CLI11 gives as one text:
+/// "TEXT:{origin,encoder}", "INT:from 2 to 100".
 void ReadType(const std::string& type, OptionWords& words) {
   const std::string name = type.substr(0, type.find(':'));
   words.choices = SplitAtCommas(Between(type, "{", "}"));

@@ -10,16 +10,16 @@ class App;
 
 namespace elastocal::cli {
 
-/// What an option wants to have after it.
+/// Kind of value that an option takes.
 enum class ValueKind { kNone, kNumber, kChoice, kFile, kFolder, kOther };
 
-/// An option of a command, or an argument that has no dashes.
+/// An option of a command, or an argument without dashes.
 struct OptionWords {
   std::vector<std::string> names;     ///< "-o", "--output"; empty for an argument
-  std::string value;                  ///< how the help calls its value: "FILE"; "" for a flag
-  std::string range;                  ///< what is allowed, where that is a range: "2 to 1000"
-  std::vector<std::string> choices;   ///< all values that are allowed, where these are few
-  std::string help, standard, group;  ///< `standard`: the value that it has when it is not given
+  std::string value;                  ///< name of its value in the help: "FILE"; "" for a flag
+  std::string range;                  ///< allowed range, if there is one: "2 to 1000"
+  std::vector<std::string> choices;   ///< all allowed values, if there are few
+  std::string help, standard, group;  ///< `standard` is the default value
   ValueKind kind = ValueKind::kNone;
   bool is_required = false, is_repeated = false;
 };
@@ -29,17 +29,18 @@ struct CommandWords {
   std::vector<OptionWords> arguments, options;
 };
 
-/// All words that the program knows, for the manual and for shells.
+/// All words of the program, for the manual page and for shells.
 struct ProgramWords {
   std::string name, version, help;
   std::vector<std::pair<int, std::string>> exit_codes;
-  std::vector<OptionWords> options;    ///< without a command
-  std::vector<OptionWords> shared;     ///< of every command; each command's list has them too
-  std::vector<CommandWords> commands;  ///< but for hidden ones
+  std::vector<OptionWords> options;  ///< options without a command
+  /// Options of every command, also contained in each command's list.
+  std::vector<OptionWords> shared;
+  std::vector<CommandWords> commands;  ///< without hidden ones
 };
 
-/// Reads them from the definitions that parse the command line. Version and exit codes are left to
-/// the caller.
+/// Reads the words from the definitions that parse the command line. Version and exit codes are
+/// left to the caller.
 ProgramWords ReadWords(const CLI::App& app);
 
 }  // namespace elastocal::cli

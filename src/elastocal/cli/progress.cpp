@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kEmptyLine = "\r\033[K";
 
-/// Guards the terminal's line and the state of the line that lives.
+/// Guards the terminal's line and the state of the existing line.
 std::mutex& Guard() {
   static std::mutex guard;
   return guard;
@@ -37,9 +37,9 @@ std::size_t TerminalWidth() {
   return known ? size.ws_col : 80;
 }
 
-/// These two are called with the guard held.
+/// Both functions are called with the guard held.
 void Draw(const std::string& text) {
-  // What stdout still holds belongs above the line.
+  // Buffered output of stdout belongs above the line.
   std::fflush(stdout);
   fmt::print(stderr, "{}{}", kEmptyLine, Printable(text.substr(0, TerminalWidth() - 1)));
   std::fflush(stderr);

@@ -7,15 +7,16 @@
 
 namespace elastocal::cli {
 
+/// Options of QuickDemo.
 struct QuickDemoOptions {
   CommonOptions common;
-  std::filesystem::path project;  ///< of the embedded humanoid
+  std::filesystem::path project;  ///< path of the project of the embedded humanoid
   std::filesystem::path output;   ///< folder for the recording and the results
   int postures = 60;
 };
 
-/// Calibrates the upper body from a generated table of random postures and shows truth against
-/// estimate. Gives the exit code.
+/// Calibrates the upper body from a generated table of random postures, and prints true and
+/// estimated values. Returns the exit code.
 int QuickDemo(const QuickDemoOptions& options);
 
 }  // namespace elastocal::cli

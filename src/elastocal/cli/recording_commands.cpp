@@ -25,7 +25,7 @@ struct RecordingCommand {
   ReaderOptions reading;
 };
 
-/// One sign for each part of the time: seen in all frames, in some, in none.
+/// One sign for each part of the time: the marker was seen in all frames, in some, or in none.
 std::string DrawSight(const MarkerSight& sight) {
   std::string picture;
   for (const double share : sight.share_by_part) {
@@ -110,7 +110,7 @@ int Info(const RecordingCommand& command) {
   return kFine;
 }
 
-/// A name that promises another format would mislead whoever opens the file.
+/// Refuses a file name that promises another format.
 void CheckWrittenFormat(const std::string& output) {
   const std::string extension = std::filesystem::path(output).extension().string();
   for (const char* other : {".c3d", ".trc", ".npz", ".mcap", ".db3", ".bag"}) {
@@ -139,7 +139,7 @@ int Convert(const RecordingCommand& command) {
   return kFine;
 }
 
-/// The file, and what it may not say by itself.
+/// Adds the file, and options for what it may not state.
 void AddRecording(CLI::App& command, RecordingCommand& options) {
   command
       .add_option("recording", options.file,

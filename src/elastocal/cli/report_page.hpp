@@ -12,28 +12,28 @@
 
 namespace elastocal::cli {
 
-/// Remembers how the program was called, for runs.json.
+/// Stores the command line for runs.json.
 void SetCommandLine(int argc, char** argv);
 
 /// The record of this run for runs.json.
 RunRecord MakeRunRecord(const std::string& command, const CommonOptions& options,
                         std::vector<InputRecord> inputs);
 
-/// Says where the report of a folder is or, where that is not empty, why there is none.
+/// Prints where the report of a folder is or, if `why_none` is not empty, why there is none.
 void PrintReportPlace(const std::filesystem::path& folder, const std::string& why_none, bool quiet);
 
-/// What `design` and `plan` write beside their output (robot_data.json, runs.json and report.html),
-/// declared together with it.
+/// Declares the files that `design` and `plan` write beside their output: robot_data.json,
+/// runs.json and report.html.
 void DeclarePlanningReport(const std::filesystem::path& output, OutputSet& outputs);
 
-/// What to say of it.
+/// Result of SetPlanningReport, to be printed.
 struct PlanningReport {
   std::filesystem::path folder;
-  std::string why_none;  ///< why there is no report.html; empty where there is one
+  std::string why_none;  ///< reason why there is no report.html; empty where there is one
   std::vector<std::string> warnings;
 };
 
-/// The contents of these files. Call it when those of the command itself are set.
+/// Sets the contents of these files. Call it after the contents of the command's own files are set.
 PlanningReport SetPlanningReport(const std::filesystem::path& output, const RunRecord& record,
                                  const Project& project, OutputSet& outputs);
 

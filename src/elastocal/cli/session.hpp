@@ -11,17 +11,17 @@
 
 namespace elastocal::cli {
 
-/// Prints to stdout unless quiet; see Printable for what is shown of names in the text.
+/// Prints to stdout unless quiet; Printable defines how names in the text are shown.
 void Print(bool quiet, const std::string& text);
 
-/// Prints warnings to stderr; those that say the same of several things together, unless `verbose`.
+/// Prints warnings to stderr. Similar warnings about several things are grouped, unless `verbose`.
 void PrintWarnings(const std::vector<std::string>& warnings, bool verbose = false);
 
-/// Says what a calibration knows that an export does not apply. `at_run_time`: to a robot at run
-/// time.
+/// Warns of causes in a calibration that an export does not apply. `at_run_time`: the export is for
+/// a robot at run time.
 void WarnOfExtra(const CalibratedRobot& robot, bool at_run_time);
 
-/// A parameter in the units that people use: mm and deg.
+/// Value of a parameter in units for people: mm and deg.
 double InUserUnits(const Parameter& parameter, double value);
 const char* UserUnit(const Parameter& parameter);
 

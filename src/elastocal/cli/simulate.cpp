@@ -31,17 +31,17 @@ struct SimulateCommand {
   CommonOptions common;
   std::string project, output, trials = "all";
   std::string settings;
-  std::string postures, motion, kind;  ///< of a motion that the user gives
+  std::string postures, motion, kind;  ///< for a motion that the user gives
   std::vector<std::string> chains;
   int threads = 2, count = 0;
-  std::string deploy;           ///< folder of a calibration that is put to use
-  std::vector<std::string> as;  ///< how; empty: in all ways
+  std::string deploy;           ///< folder of a calibration that is used by controllers
+  std::vector<std::string> as;  ///< knowledge of the controllers; empty: all kinds
   std::string stabiliser = "both";
   double until_s = DeployOptions().until_s;
   std::optional<std::uint64_t> robot_seed;
-  double marker_places_mm = 0.0;  ///< sd of the table of measured places; 0: none
+  double marker_places_mm = 0.0;  ///< sd of the table of measured marker positions; 0: none
   bool nominal = false, free = false, matched = false, force = false;
-  std::map<std::string, std::string> flags;  ///< options of the experiment given, by key
+  std::map<std::string, std::string> flags;  ///< given options of the experiment, by key
 };
 
 std::string FlagName(std::string key) {
@@ -49,7 +49,8 @@ std::string FlagName(std::string key) {
   return "--" + key;
 }
 
-/// Defaults, or a perfect robot; then the settings file; then the command line.
+/// Settings in increasing priority: defaults or a perfect robot, the settings file, the command
+/// line.
 VirtualExperimentOptions Settings(const SimulateCommand& options) {
   VirtualExperimentOptions settings;
   if (options.nominal) SwitchOffImperfections(settings);
@@ -85,7 +86,7 @@ SimulationOptions MakeOptions(const SimulateCommand& command, const Project& pro
   return options;
 }
 
-/// Executes a motion on the robot that was calibrated, and measures what the calibration is worth.
+/// Executes a motion on the robot that was calibrated, and measures the gain by the calibration.
 int Deploy(const SimulateCommand& command) {
   if (command.motion.empty()) throw InputError("--deploy: --motion FILE was expected with it");
   const Project project = ReadProject(command.project);
@@ -129,7 +130,7 @@ int Deploy(const SimulateCommand& command) {
   return kFine;
 }
 
-/// A project with contact or instruments: tables of observations instead of trials.
+/// For a project with contact or instruments: simulates tables of observations instead of trials.
 int SimulateInstruments(const SimulateCommand& command, const Project& project) {
   const bool of_trials = !command.motion.empty() || !command.kind.empty() ||
                          !command.chains.empty() || command.trials != "all" || command.matched ||
@@ -153,7 +154,7 @@ int SimulateInstruments(const SimulateCommand& command, const Project& project) 
   return RunObservationSimulation(of, project);
 }
 
-/// Options that would not do anything.
+/// Refuses options that would have no effect.
 void RefuseIdleOptions(const SimulateCommand& command, const Project& project) {
   if (command.count > 0) {
     throw InputError("--count: " + project.file.string() +
@@ -188,7 +189,7 @@ int Simulate(const SimulateCommand& command) {
   return kFine;
 }
 
-/// What the robot plays.
+/// Adds options that select what the robot plays.
 void AddMotionOptions(CLI::App& command, SimulateCommand& options) {
   command
       .add_option("--trials", options.trials,
@@ -221,7 +222,7 @@ void AddMotionOptions(CLI::App& command, SimulateCommand& options) {
       ->transform(OneOf({"calibration", "sine", "random", "repeatability"}));
 }
 
-/// Robots that execute a motion by what a calibration says of them.
+/// Adds options for robots that execute a motion by a calibration.
 void AddDeployOptions(CLI::App& command, SimulateCommand& options) {
   auto* deploy =
       command
@@ -251,7 +252,7 @@ void AddDeployOptions(CLI::App& command, SimulateCommand& options) {
       ->check(FromTo(1.0, 1e6));
 }
 
-/// How it is played and recorded.
+/// Adds options on playing and recording.
 void AddPlayOptions(CLI::App& command, SimulateCommand& options) {
   command.add_option("--threads", options.threads, "Trials played at a time")
       ->check(FromTo(1, 64))
@@ -271,8 +272,8 @@ void AddPlayOptions(CLI::App& command, SimulateCommand& options) {
                    "Replace recordings in the folder that were not simulated");
 }
 
-/// What is wrong with the value of a setting; empty: nothing. Known before anything is done, so
-/// that a batch of days refuses it at once.
+/// Message if the value of a setting is wrong; else empty. It is checked first, so that a long
+/// batch refuses it at once.
 std::string WrongSetting(const std::string& key, const std::string& text) {
   VirtualExperimentOptions tried;
   for (const SimulationSetting& setting : SimulationSettings(tried)) {
@@ -286,7 +287,7 @@ std::string WrongSetting(const std::string& key, const std::string& text) {
   return "";
 }
 
-/// The same settings as in --settings, each a flag.
+/// Adds the settings of --settings as flags.
 void AddSettings(CLI::App& command, SimulateCommand& options) {
   VirtualExperimentOptions defaults;
   for (const SimulationSetting& setting : SimulationSettings(defaults)) {

@@ -10,7 +10,7 @@ namespace elastocal::cli {
 /// Tables of the trials and of the legs' stiffness.
 std::string DescribeSimulation(const SimulationRun& run);
 
-/// The line that says where the recording is.
+/// The line that names the folder of the recording.
 std::string WrittenRecording(const std::string& folder);
 
 }  // namespace elastocal::cli

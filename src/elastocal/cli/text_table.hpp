@@ -7,19 +7,19 @@
 
 namespace elastocal::cli {
 
-/// A table for a terminal: the first column to the left, the others to the right.
+/// A table for a terminal: the first column is aligned to the left, the others to the right.
 class TextTable {
  public:
   explicit TextTable(std::vector<std::string> header);
   void Add(std::vector<std::string> row);
-  /// Rows indented by two spaces, each ended by a line feed.
+  /// The table with rows indented by two spaces, each ended by a line feed.
   std::string Render() const;
 
  private:
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// "a, b and 3 more": the first `most` of these words.
+/// The first `most` of these words, and the number of the others: "a, b and 3 more".
 std::string FirstOf(const std::vector<std::string>& words, std::size_t most);
 
 }  // namespace elastocal::cli

@@ -21,13 +21,13 @@ std::string Stiffness(double compliance, const char* unit, double factor) {
   return fmt::format("{:.3g} {}", factor / compliance, unit);
 }
 
-/// N/mm along an axis, N.m/rad about one.
+/// Stiffness as text: N/mm along an axis, N.m/rad about one.
 std::string StiffnessOf(const Parameter& parameter, double compliance) {
   const bool linear = parameter.unit == ParameterUnit::kMetrePerNewton;
   return Stiffness(compliance, linear ? "N/mm" : "N.m/rad", linear ? 1e-3 : 1.0);
 }
 
-/// What the recording adds to what was assumed beforehand.
+/// Text on how much the recording adds to the prior.
 std::string LittleTold(const CalibrationResult& result, int i) {
   const Parameter& parameter = result.model.parameters[i];
   const auto figure = [&](double value) {
@@ -38,7 +38,7 @@ std::string LittleTold(const CalibrationResult& result, int i) {
                      figure(result.prior_sd[i]));
 }
 
-/// Stiffness of the legs at the waist; nothing for a robot without legs.
+/// Text on the stiffness of the legs at the waist; empty for a robot without legs.
 std::string DescribeLegs(const std::vector<LegStiffness>& legs) {
   if (legs.empty()) return "";
   TextTable table({"leg at the waist (95 %)", "Kx N/mm", "Ky", "Kz", "Krx N.m/rad", "Kry", "Krz"});
@@ -56,7 +56,7 @@ std::string DescribeLegs(const std::vector<LegStiffness>& legs) {
   return table.Render();
 }
 
-/// What gives way below the markers of the feet; nothing for a robot without legs.
+/// Text on the compliance below the markers of the feet; empty for a robot without legs.
 std::string DescribeSoles(const std::vector<SoleSpring>& soles) {
   std::string text;
   bool open = false;

@@ -13,13 +13,13 @@
 namespace elastocal::cli {
 namespace {
 
-/// The command on the command line; the program where there is none.
+/// The command on the command line, or the program if there is none.
 const CLI::App& GivenCommand(const CLI::App& app) {
   const std::vector<CLI::App*> given = app.get_subcommands();
   return given.empty() ? app : *given.front();
 }
 
-/// "; did you mean '--lift-mm'?" for an option of the command whose name begins like this one, or
+/// Text "; did you mean '--lift-mm'?" for an option of the command that begins like this word, or
 /// is nearest to it.
 std::string NearestOption(const CLI::App& command, const std::string& word) {
   std::vector<std::string> known;
@@ -32,7 +32,7 @@ std::string NearestOption(const CLI::App& command, const std::string& word) {
   return DidYouMean(word, known);
 }
 
-/// The words that nothing takes, in quotes: an empty one would not be seen.
+/// The unknown words, in quotes, because an empty word would be invisible.
 std::string UnknownWords(const CLI::App& app) {
   std::string words, nearest;
   for (const std::string& word : app.remaining(true)) {
@@ -43,7 +43,7 @@ std::string UnknownWords(const CLI::App& app) {
   return "The following arguments were not expected: " + words + nearest;
 }
 
-/// "OPTION: rest" of the library's messages.
+/// The option in a message "OPTION: rest" of the library.
 std::string NameIn(const std::string& message) { return message.substr(0, message.find(": ")); }
 
 std::string WrongCount(const std::string& message) {

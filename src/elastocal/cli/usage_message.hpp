@@ -7,12 +7,12 @@
 
 namespace elastocal::cli {
 
-/// What is wrong with a command line, in one line: the option, what was found and what was
+/// Describes an error in a command line in one line: the option, what was found and what was
 /// expected.
 std::string UsageError(const CLI::App& app, const CLI::Error& error);
 
-/// The same as an error of the program. A second line says where the help is. For
-/// CLI::App::failure_message.
+/// UsageError as an error message of the program, with a second line that says where the help is.
+/// For CLI::App::failure_message.
 std::string UsageMessage(const CLI::App* app, const CLI::Error& error);
 
 }  // namespace elastocal::cli

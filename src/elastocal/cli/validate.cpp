@@ -30,11 +30,11 @@ struct ValidateOptions {
   CommonOptions common;
   std::string project, calibration;
   std::vector<std::string> recording;
-  std::string output;  ///< folder; empty: none
+  std::string output;  ///< path of the folder; empty: none
   bool frozen = false;
   std::string refit;  ///< "table"; empty: nothing
   std::vector<std::string> accept;
-  std::string marker_places;  ///< table of measured ones; empty: none
+  std::string marker_places;  ///< table of measured marker positions; empty: none
 };
 
 std::string Table(const ValidationRun& run) {
@@ -57,7 +57,7 @@ bool ModelGivesWay(const ErrorModel& model) {
                      [](const Parameter& one) { return IsElastic(one.kind); });
 }
 
-/// One sentence for whoever reads no table.
+/// The verdict in one sentence.
 std::string VerdictText(const ValidationRun& run) {
   if (!run.mistakes.empty()) {
     return "Verdict: the recording has a mistake or contradicts the calibration; see below.\n\n";
@@ -88,7 +88,7 @@ std::string VerdictText(const ValidationRun& run) {
   return text + ".\n\n";
 }
 
-/// How well measured places of markers agree; empty where none were given.
+/// Text on the agreement of measured marker positions; empty where none were given.
 std::string PlacesText(const ValidationRun& run) {
   if (run.places.empty()) return "";
   TextTable table({"measured place", "distance mm", "in standard deviations"});
@@ -118,7 +118,7 @@ std::string RunText(const ValidationRun& run) {
 std::vector<std::string> ErrorsOf(const ValidationRun& run) {
   std::vector<std::string> errors = run.mistakes;
   errors.insert(errors.end(), run.not_judged.begin(), run.not_judged.end());
-  if (!run.mistakes.empty()) return errors;  // they explain the figures
+  if (!run.mistakes.empty()) return errors;  // the mistakes explain the errors
   if (!run.converged()) errors.emplace_back("the fit of waist and markers has not converged");
   if (!run.plausible()) {
     errors.push_back(fmt::format(
@@ -177,7 +177,7 @@ int Validate(const ValidateOptions& options) {
   std::vector<std::filesystem::path> inputs = InputFiles(project, recordings);
   inputs.push_back(FindCalibrationFiles(options.calibration).calibration);
   if (!options.marker_places.empty()) {
-    ReadMarkerPlaces(options.marker_places, project);  // refused before what takes long
+    ReadMarkerPlaces(options.marker_places, project);  // refused before long computations
     inputs.emplace_back(options.marker_places);
   }
   OutputSet outputs;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMostLikewise = 6;
 
-/// A word without the punctuation around it.
+/// A word without surrounding punctuation.
 std::string Core(const std::string& word) {
   constexpr const char* kPunctuation = ":,;.()?'";
   const std::size_t begin = word.find_first_not_of(kPunctuation);
@@ -33,14 +33,14 @@ bool IsNumber(const std::string& core) {
   return core.find_first_not_of("0123456789.+-e") == std::string::npos;
 }
 
-/// A warning as what it says and what it says it of.
+/// A warning, divided into its statement and its subjects.
 struct Parsed {
-  std::string pattern;             ///< with "*" for what may differ, a list being one "*"
-  std::vector<std::string> names;  ///< what stood there, but for numbers
+  std::string pattern;             ///< with "*" for what may differ; a list is one "*"
+  std::vector<std::string> names;  ///< the words at these places, without numbers
 };
 
-/// Whether a text ends as the name of a file does, perhaps with numbers of lines behind it
-/// ("left.csv", "A-B.csv:45").
+/// Whether a text ends like the name of a file, possibly followed by line numbers ("left.csv",
+/// "A-B.csv:45").
 bool EndsAsFile(std::string text) {
   constexpr std::array kEndings = {".csv", ".tsv",  ".trc", ".c3d", ".npz", ".yaml", ".yml",
                                    ".txt", ".json", ".bag", ".db3", ".xml", ".urdf", ".mcap"};
@@ -54,15 +54,15 @@ bool EndsAsFile(std::string text) {
                      [&](const char* ending) { return text.ends_with(ending); });
 }
 
-/// The length of the place that a warning begins with ("my table.csv:45", "day 2/left.csv"): up to
-/// a colon and a blank. 0 without one.
+/// Length of the place with which a warning begins ("my table.csv:45", "day 2/left.csv"), up to a
+/// colon and a blank. 0 without one.
 std::size_t LengthOfPlace(const std::string& warning) {
   const std::size_t colon = warning.find(": ");
   return colon != std::string::npos && EndsAsFile(warning.substr(0, colon)) ? colon : 0;
 }
 
-/// How many words before the end of a file's name belong to the name as well, which may have
-/// blanks: those behind a preposition ("of day 2/arm A-B.csv:45"); none without one.
+/// Number of words before the end of a file's name that belong to the name, which may contain
+/// blanks: those after a preposition ("of day 2/arm A-B.csv:45"). 0 without one.
 std::size_t WordsOfName(const std::vector<std::string>& before) {
   constexpr std::array kPrepositions = {"in", "of", "at", "from", "by", "and", "to", "with"};
   for (std::size_t count = 0; count < before.size(); ++count) {
@@ -75,7 +75,7 @@ std::size_t WordsOfName(const std::vector<std::string>& before) {
   return 0;
 }
 
-/// The words of a sentence of which a name is one word, whatever blanks are in it.
+/// The words of a sentence; a name is one word, even if it contains blanks.
 std::vector<std::string> WordsOf(const std::string& sentence) {
   std::vector<std::string> words;
   std::istringstream stream(sentence);
@@ -111,7 +111,7 @@ Parsed Parse(const std::string& warning) {
     }
     if (!IsNumber(core)) parsed.names.push_back(core);
     word.replace(word.find(core), core.size(), "*");
-    // "*, *", and "* and * more" of a longer list: the same as "*".
+    // "*, *", and "* and * more" of a longer list, count as "*".
     if (!pattern.empty() && pattern.back() == "*,") pattern.pop_back();
     pattern.push_back(word);
   }
@@ -122,11 +122,11 @@ Parsed Parse(const std::string& warning) {
   return parsed;
 }
 
-/// Warnings of one pattern.
+/// Warnings with the same pattern.
 struct Group {
   std::string pattern, first;
-  std::vector<std::string> known;   ///< names in the first
-  std::vector<std::string> others;  ///< of each further one the names that are new
+  std::vector<std::string> known;   ///< names in the first warning
+  std::vector<std::string> others;  ///< new names in each further warning
   int count = 0;
 };
 

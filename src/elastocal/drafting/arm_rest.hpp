@@ -8,9 +8,9 @@
 
 namespace elastocal {
 
-/// Moves the chain's joints in the posture of rest `q` until its tip is well inside its box and its
-/// spheres are free of the rest of the robot: of 4000 random postures that do, the one that is
-/// nearest to `q`, in whole degrees. Returns whether there is one.
+/// Changes the chain's joints in the posture of rest `q` so that its tip is well inside its box and
+/// its spheres do not touch the rest of the robot. Of 4000 random postures, the nearest to `q` that
+/// does so is taken, rounded to whole degrees. Returns whether there is one.
 bool HoldAhead(const RobotTree& tree, const std::vector<CollisionSphere>& spheres,
                const std::vector<SpherePair>& pairs, const ChainSetup& chain, double margin,
                Eigen::VectorXd& q);

@@ -18,16 +18,16 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastDensity = 20.0;   // kg/m^3: foam
-constexpr double kUsualDensity = 900.0;  // kg/m^3: of a robot's link, motors and hollows together
+constexpr double kUsualDensity = 900.0;  // kg/m^3: mean of a robot's link with motors and hollows
 
 /// A shape of a link, in its body's frame.
 struct LinkShape {
   std::optional<Primitive> primitive;   ///< nothing for a mesh
-  std::vector<Eigen::Vector3d> points;  ///< of its surface, m
+  std::vector<Eigen::Vector3d> points;  ///< points of its surface, m
   double volume = 0.0;                  ///< m^3
 };
 
-/// The shapes of the links of a URDF, with what is to be said of meshes.
+/// Reads the shapes of a URDF's links, and collects warnings about meshes.
 class ShapeReader {
  public:
   ShapeReader(const RobotTree& tree, const MeshPlaces& places)
@@ -64,7 +64,7 @@ class ShapeReader {
   }
 
  private:
-  static constexpr double kSpacing = 0.004;  // of the longest branch: 5 mm on 1.25 m
+  static constexpr double kSpacing = 0.004;  // share of the longest branch: 5 mm for 1.25 m
   static constexpr std::size_t kMostPoints = 20000;
 
   std::optional<LinkShape> ReadGeometry(const XmlElement& geometry, const Transform& T_body_shape) {
@@ -126,7 +126,7 @@ class ShapeReader {
   std::vector<std::string> faults_;
 };
 
-/// The points of shapes that are not inside a primitive among them, shape by shape.
+/// The points of shapes, by shape, that are not inside one of the primitives.
 std::vector<std::vector<Eigen::Vector3d>> OuterPoints(const std::vector<LinkShape>& shapes) {
   constexpr double kDepth = 1e-6;
   std::vector<std::vector<Eigen::Vector3d>> parts;
@@ -159,8 +159,8 @@ BodyMass MassOf(const RobotTree& tree, int body) {
   return sum;
 }
 
-/// Rods from the body's origin to the joints that it carries or, at the end of a limb, through its
-/// centre of mass as far again. Their volume is that of the mass.
+/// Points of rods from the body's origin to the joints that it carries or, at the end of a limb,
+/// through its centre of mass and as far beyond it. Their volume follows from the mass.
 std::vector<Eigen::Vector3d> GuessPoints(const RobotTree& tree, int body, double longest) {
   const BodyMass mass = MassOf(tree, body);
   std::vector<Eigen::Vector3d> ends;

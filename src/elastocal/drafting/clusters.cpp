@@ -16,7 +16,7 @@ namespace {
 
 using Triple = std::array<Eigen::Vector3d, 3>;
 
-/// Of two lines, each through a point in a direction.
+/// Distance of two lines, each given by a point and a direction.
 double LineDistance(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& q,
                     const Eigen::Vector3d& b) {
   constexpr double kParallel = 1e-3;
@@ -36,7 +36,7 @@ struct Candidate {
   double free = 0.0;  ///< distance to the nearest other body in the posture of rest, m
 };
 
-/// A few points far from each other, those in the open first.
+/// Selects points that are far from each other, those in the open first.
 std::vector<Candidate> Spread(std::vector<Candidate> all, std::size_t count, double enough) {
   std::vector<Candidate> chosen;
   std::vector<double> distance(all.size(), std::numeric_limits<double>::infinity());
@@ -66,8 +66,8 @@ std::array<double, 3> Sides(const Triple& t) {
   return sides;
 }
 
-/// How good three markers are: a fat triangle, large up to a limit, of clearly different sides, in
-/// the open. Negative for one that must not be taken.
+/// Score of three markers: a triangle that is not flat, large up to a limit, with clearly different
+/// sides, in the open. Negative for a triangle that must not be used.
 double Worth(const std::array<const Candidate*, 3>& c, double largest) {
   constexpr double kAlike = 0.88, kFlattest = 0.35;
   const Triple triple = {c[0]->p, c[1]->p, c[2]->p};
@@ -134,7 +134,7 @@ class ClusterPlacer {
   std::vector<DraftedCluster> clusters;
 
  private:
-  /// Every point is compared with all others.
+  /// Thins the points, because each is compared with all others.
   static RobotShapes Thinned(RobotShapes shapes) {
     constexpr std::size_t kMost = 600;
     for (BodyShape& body : shapes.bodies) body.points = ThinOut(body.points, kMost);
@@ -165,7 +165,7 @@ class ClusterPlacer {
     return name;
   }
 
-  /// The mirror image of a cluster, if it is on the shape of this body too.
+  /// The mirror image of a cluster, if it also lies on the shape of this body.
   std::optional<Triple> Reflected(const DraftedCluster& other, int body) const {
     constexpr double kOnShape = 0.02;
     Triple triple;

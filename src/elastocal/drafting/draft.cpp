@@ -28,7 +28,7 @@ const DraftedSole* SoleOf(const ProjectDraft& draft, int limb) {
   return nullptr;
 }
 
-/// The limbs' tips in the tree that has all soles.
+/// Finds the limbs' tips in the tree with all soles.
 void NameTips(const RobotTree& before, ProjectDraft& draft) {
   for (std::size_t i = 0; i < draft.limbs.limbs.size(); ++i) {
     Limb& limb = draft.limbs.limbs[i];
@@ -41,16 +41,18 @@ void NameTips(const RobotTree& before, ProjectDraft& draft) {
   }
 }
 
-/// What carries limbs that do not begin on the root link: above it a torso, above legs a waist.
+/// Name of the part that carries limbs which do not begin on the root link: torso for arms, waist
+/// for legs.
 std::string TrunkName(const Limb& limb) { return limb.leg ? "waist" : "torso"; }
 
-/// Name of the chain of a limb from the root link on.
+/// Name of the chain of a limb from the root link.
 std::string WholeName(const Limb& limb) {
   return limb.from_body == 0 ? limb.name : TrunkName(limb) + "_" + limb.name;
 }
 
-/// Limbs on a moving trunk have two chains: of their own joints, and from the root link. What has
-/// no mirror image is one chain from the root link, and a trunk without a head is one itself.
+/// Adds the chains. Limbs on a moving trunk have two: one of their own joints, and one from the
+/// root link. A limb without mirror image is one chain from the root link; a trunk without a head
+/// is a chain itself.
 void AddChains(ProjectDraft& draft) {
   std::vector<std::pair<int, std::string>> trunks;  // bodies, with the names of their chains
   std::set<int> done;
@@ -87,7 +89,7 @@ ChainSetup SetupOf(const ProjectDraft& draft, const std::string& name, int from,
   return setup;
 }
 
-/// The whole of the draft that is needed to mirror a set-up.
+/// The part of the draft that is needed to mirror a set-up.
 MotionSetup MotionOf(const ProjectDraft& draft) {
   MotionSetup motion;
   motion.rest = draft.rest.q;
@@ -95,7 +97,7 @@ MotionSetup MotionOf(const ProjectDraft& draft) {
   return motion;
 }
 
-/// Whether postures of a set-up, mirrored, are postures of the limb on the other side.
+/// Whether mirrored postures of a set-up are postures of the limb on the other side.
 bool CanBeMirrored(const ProjectDraft& draft, const ChainSetup& setup, const DraftedChain& other) {
   constexpr double kSameLimit = 0.02;
   const std::vector<int> there = ChainCoordinates(draft.tree, other.from_link, other.tip_link);
@@ -109,7 +111,7 @@ bool CanBeMirrored(const ProjectDraft& draft, const ChainSetup& setup, const Dra
     const JointLimits here = limits(setup.coordinates[i]), image = limits(there[i]);
     const double lower = sign > 0.0 ? image.lower : -image.upper;
     const double upper = sign > 0.0 ? image.upper : -image.lower;
-    // Equal infinities differ by no number.
+    // The difference of equal infinities is NaN.
     if (here.lower != lower && !(std::abs(here.lower - lower) < kSameLimit)) return false;
     if (here.upper != upper && !(std::abs(here.upper - upper) < kSameLimit)) return false;
   }
@@ -119,7 +121,7 @@ bool CanBeMirrored(const ProjectDraft& draft, const ChainSetup& setup, const Dra
       .has_value();
 }
 
-/// A set-up for each limb, with its workspace.
+/// Adds a set-up with its workspace for each limb.
 void AddSetups(ProjectDraft& draft) {
   const bool legged = !draft.soles.empty();
   for (std::size_t i = 0; i < draft.limbs.limbs.size(); ++i) {
@@ -140,10 +142,10 @@ void AddSetups(ProjectDraft& draft) {
   }
 }
 
-/// The palm keeps showing about where it shows at rest, so that cameras see its markers.
+/// Largest deviation of the palm's direction from that at rest, so that cameras see its markers.
 constexpr double kCone = 60.0 * kRadiansPerDegree;
 
-/// Arms of a robot on legs are held ahead, unless somebody has said what its rest is.
+/// Holds the arms of a robot on legs ahead, unless the SRDF has named postures.
 void HoldArmsAhead(ProjectDraft& draft, const Semantics& semantics) {
   if (!semantics.states.empty() || draft.soles.empty()) return;
   bool held = false;
@@ -194,7 +196,7 @@ void AddContacts(ProjectDraft& draft, const Semantics& semantics) {
   }
 }
 
-/// Of two limbs that are mirror images, the first one is designed for both.
+/// Of two limbs that are mirror images, keeps the set-up of the first one for both.
 void JoinMirrors(ProjectDraft& draft) {
   std::vector<ChainSetup> joined;
   std::vector<std::string> mirrored;
@@ -278,7 +280,7 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
   for (std::string& coarse : CoarseCovers(draft.tree, draft.shapes, draft.spheres)) {
     draft.warnings.push_back(std::move(coarse));
   }
-  constexpr double kMargin = 0.004;  // of the longest branch: 5 mm on a robot of 1.75 m
+  constexpr double kMargin = 0.004;  // share of the longest branch: 5 mm for 1.25 m
   draft.sphere_margin =
       kMetresPerMm * std::max(1.0, std::round(kMargin * LongestBranch(draft.tree) / kMetresPerMm));
   AddChains(draft);

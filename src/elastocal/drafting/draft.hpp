@@ -15,7 +15,7 @@
 
 namespace elastocal {
 
-/// Share of the motors' efforts that drafted postures use.
+/// Share of the motors' efforts that drafted postures may use.
 inline constexpr double kDraftedEffort = 0.85;
 
 /// A chain of a draft.
@@ -24,10 +24,10 @@ struct DraftedChain {
   int from_link = 0, tip_link = 0;
 };
 
-/// Everything that a project file says of a robot, as far as its description tells.
+/// Contents of a drafted project file, as far as the robot description tells.
 struct ProjectDraft {
-  std::string urdf;  ///< the text, with the links of soles that were missing
-  RobotTree tree;    ///< of that text
+  std::string urdf;  ///< text of the URDF, with added links for missing soles
+  RobotTree tree;    ///< tree of that text
   RobotShapes shapes;
   Limbs limbs;
   std::vector<DraftedChain> chains;
@@ -37,28 +37,28 @@ struct ProjectDraft {
   double sphere_margin = 0.0;  ///< m
   RestPosture rest;
   std::vector<ChainSetup> designs;
-  /// Share of the motors' efforts that planned motions use: more than usual where the robot could
-  /// not lift a foot otherwise.
+  /// Share of the motors' efforts that planned motions may use: larger than usual where the robot
+  /// could not lift a foot otherwise.
   double motion_effort_share = MotionSetup{}.motion_effort_share;
-  std::map<int, Eigen::Vector2d> ranges;  ///< of entries of q that use a part of theirs only
-  /// Whether the soles are written: the robot stands on them.
+  std::map<int, Eigen::Vector2d> ranges;  ///< restricted ranges of some entries of q
+  /// The soles are written to the project, because the robot can stand on them.
   bool stands = false;
-  std::string held_because;           ///< why it does not stand, though there are soles
-  std::optional<double> stance;       ///< m, where the feet are too close in the zero posture
-  std::vector<std::string> warnings;  ///< what a person should look at first
+  std::string held_because;           ///< reason why it cannot stand although there are soles
+  std::optional<double> stance;       ///< m; given where the feet are too close in the zero posture
+  std::vector<std::string> warnings;  ///< what the user should check first
 };
 
 /// Drafts a project from a URDF and, if there is one, its SRDF. `source` names the URDF in
-/// messages; `places` is where its meshes are. The same files give the same draft. Throws
+/// messages; `places` says where its meshes are. The same files give the same draft. Throws
 /// InputError for texts that cannot be read and for a robot without movable joints.
 ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
                           const Semantics& semantics, const MeshPlaces& places = {});
 
-/// The draft as a project file (docs/formats.md) with comments that say where its values are from.
-/// `urdf` is the path of the robot description as seen from the file.
+/// The draft as a project file (docs/formats.md), with comments that tell the origin of its values.
+/// `urdf` is the path of the robot description relative to that file.
 std::string FormatDraft(const ProjectDraft& draft, const std::string& urdf);
 
-/// The draft for programs (JSON).
+/// The draft as JSON.
 std::string FormatDraftSummary(const ProjectDraft& draft);
 
 }  // namespace elastocal

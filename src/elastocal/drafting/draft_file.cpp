@@ -14,7 +14,7 @@
 namespace elastocal {
 namespace {
 
-/// A name as YAML reads it back as text.
+/// A name in a form that YAML reads back as text.
 std::string Word(const std::string& text) {
   constexpr std::array kReserved = {"true", "false", "null", "yes", "no", "on", "off", "y", "n"};
   std::string lower;
@@ -31,7 +31,7 @@ std::string Word(const std::string& text) {
   return quoted + "\"";
 }
 
-/// A length in mm without decimals that say nothing; never "-0".
+/// A length in mm without decimals; never "-0".
 std::string Mm(double metres) { return fmt::format("{:.0f}", std::round(metres * 1e3) + 0.0); }
 
 template <typename Point>
@@ -66,7 +66,7 @@ class DraftWriter {
   }
 
  private:
-  /// A joint to name in an example: of an arm or a leg if there is one, no wheel's.
+  /// A joint for an example: of an arm or a leg if there is one, never of a wheel.
   int LimbJoint() const {
     for (const Limb& limb : draft_.limbs.limbs) {
       if (limb.mirror >= 0 && !limb.joints.empty()) return limb.joints.back();
@@ -129,7 +129,7 @@ class DraftWriter {
     for (int c = 0; c < tree_.coordinate_count(); ++c) {
       const Joint& joint = tree_.joints[Size(tree_.coordinate_joint[Size(c)])];
       const bool turns = joint.type == JointType::kRevolute;
-      // The reader itself moves what is left out from zero into the limits.
+      // The reader moves positions that are left out from zero into the limits.
       const double value = draft_.rest.q[c] / (turns ? kRadiansPerDegree : kMetresPerMm);
       if (std::abs(value) < 5e-4) continue;
       list += fmt::format("    {}: {:.3f}{}\n", Word(joint.name), value, turns ? "" : "  # mm");

@@ -26,7 +26,7 @@ int SideByName(const std::string& name) {
   return static_cast<int>(says(kLeft)) - static_cast<int>(says(kRight));
 }
 
-/// Whether the name of the tip or of one of a limb's own joints has one of these words.
+/// Whether the name of the tip, or of one of the limb's own joints, contains one of these words.
 bool Says(const RobotTree& tree, const Limb& limb, std::initializer_list<const char*> sought) {
   const auto says = [&](const std::string& name) {
     const std::vector<std::string> words = WordsOf(name);
@@ -82,7 +82,8 @@ std::string NameLimb(const RobotTree& tree, const std::vector<Limb>& limbs, cons
     return side > 0 ? "left_arm" : side < 0 ? "right_arm" : "arm";
   }
   const bool named = side * SideByNames(tree, limbs[Size(limb.mirror)]) < 0;
-  const bool one_of_four = limb.leg && legs > 2;  // which is ahead is seen, not read
+  // Which leg is ahead follows from positions, not from names.
+  const bool one_of_four = limb.leg && legs > 2;
   if (!named || one_of_four) side = tip.y() > 0.0 ? 1 : -1;
   std::string name = side > 0 ? "left_" : "right_";
   if (one_of_four) name = (tip.x() > 0.0 ? "front_" : "hind_") + name;

@@ -8,17 +8,17 @@
 
 namespace elastocal {
 
-/// The words of a name in small letters: "l", "knee" and "pitch" of "l_knee_pitch" and
-/// "LKneePitch".
+/// The words of a name in lower case: "l", "knee" and "pitch" for "l_knee_pitch" and "LKneePitch".
 std::vector<std::string> WordsOf(const std::string& name);
 
-/// The side of the robot that the names of a limb's joints and tip say: 1 left, -1 right, 0 none.
-/// "left_knee", "LKneePitch", "l_knee", "knee_l" and, of four legs, "FL_calf" and "LF_KFE" are
-/// left.
+/// Side of the robot according to the names of a limb's joints and tip: 1 left, -1 right, 0
+/// unknown. "left_knee", "LKneePitch", "l_knee", "knee_l" and, on four legs, "FL_calf" and "LF_KFE"
+/// are left.
 int SideByNames(const RobotTree& tree, const Limb& limb);
 
-/// "left_leg" and the like: the side by the names in the URDF where they say one, since a root link
-/// may face any way, and by where the tip is in the zero posture otherwise.
+/// Name of a limb, such as "left_leg". The side follows from the names in the URDF if they tell it,
+/// because a root link may face any direction; otherwise from the position of the tip in the zero
+/// posture.
 std::string NameLimb(const RobotTree& tree, const std::vector<Limb>& limbs, const Limb& limb);
 
 }  // namespace elastocal

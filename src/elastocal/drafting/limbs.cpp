@@ -14,7 +14,7 @@
 namespace elastocal {
 namespace {
 
-/// How far the branch beyond a body reaches: the longest sum of distances between its joints, m.
+/// Reach of the branch beyond a body: the longest sum of distances between its joints, m.
 double Reach(const RobotTree& tree, int body) {
   double longest = 0.0;
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
@@ -42,8 +42,8 @@ void MarkBeyond(const RobotTree& tree, int body, std::vector<bool>& marked) {
   }
 }
 
-/// Whether a joint beyond a body follows no other one: that of a neck, say, whose upper bend
-/// follows the lower one. Nothing of a finger does, beyond the joint that follows.
+/// Whether some joint beyond a body follows no other one, as in a neck whose upper bend follows the
+/// lower one. In a finger, all joints beyond a following joint follow, too.
 bool MovesByItselfBeyond(const RobotTree& tree, int body) {
   const std::vector<int> branches = Branches(tree, body);
   return std::any_of(branches.begin(), branches.end(), [&](int next) {
@@ -51,10 +51,10 @@ bool MovesByItselfBeyond(const RobotTree& tree, int body) {
   });
 }
 
-/// Bodies that belong to a gripper or to fingers.
+/// Marks bodies that belong to a gripper or to fingers.
 std::vector<bool> FindTools(const RobotTree& tree) {
   constexpr double kShort = 0.22;
-  constexpr double kFinger = 0.12;  // m: no finger slides further
+  constexpr double kFinger = 0.12;  // m: largest travel of a finger
   constexpr std::size_t kLeastJoints = 3;
   const double longest = LongestBranch(tree);
   std::vector<bool> tool(Size(tree.body_count()), false);
@@ -77,7 +77,7 @@ bool TurnsWithoutEnd(const Joint& joint) {
   return joint.type == JointType::kRevolute && !std::isfinite(joint.limits.lower);
 }
 
-/// Whether the names of the body's joint or of one of its links say that it is a wheel.
+/// Whether the name of the body's joint or of one of its links is that of a wheel.
 bool NamedWheel(const RobotTree& tree, int body) {
   const auto says = [](const std::string& name) {
     const std::vector<std::string> words = WordsOf(name);
@@ -90,9 +90,9 @@ bool NamedWheel(const RobotTree& tree, int body) {
                      [&](const Link& link) { return link.body == body && says(link.name); });
 }
 
-/// Marks wheels as tools: bodies that turn without an end, and carry nothing but other wheels. They
-/// are named so, or one or two joints carry them, all of which turn without an end, or several end
-/// beside each other.
+/// Marks wheels as tools: bodies that turn without limits and carry nothing but other wheels. They
+/// have such names, or one or two joints without limits carry them, or several of them are next to
+/// each other.
 void MarkWheels(const RobotTree& tree, std::vector<bool>& tool) {
   constexpr std::size_t kMostJoints = 2;
   std::vector<bool> wheel(Size(tree.body_count()), false);
@@ -145,7 +145,7 @@ int LinkNamed(const RobotTree& tree, const std::string& name) {
   return -1;
 }
 
-/// Whether a group is the end of this limb and nothing else.
+/// Whether a group contains exactly the end of this limb.
 bool Names(const SemanticGroup& group, const RobotTree& tree, const Limb& limb) {
   const int tip = group.tip_link.empty() ? -1 : LinkNamed(tree, group.tip_link);
   if (tip >= 0) return tree.links[Size(tip)].body == limb.tip_body;
@@ -153,7 +153,7 @@ bool Names(const SemanticGroup& group, const RobotTree& tree, const Limb& limb) 
   for (const std::string& name : group.joints) {
     const auto joint = std::find_if(tree.joints.begin(), tree.joints.end(),
                                     [&](const Joint& j) { return j.name == name; });
-    if (joint == tree.joints.end()) continue;  // a fixed one
+    if (joint == tree.joints.end()) continue;  // a fixed joint
     const int k = static_cast<int>(joint - tree.joints.begin());
     if (std::find(limb.joints.begin(), limb.joints.end(), k) == limb.joints.end()) return false;
     last = last || k == limb.joints.back();
@@ -161,7 +161,7 @@ bool Names(const SemanticGroup& group, const RobotTree& tree, const Limb& limb) 
   return last;
 }
 
-/// The link that the SRDF calls the end, or the one of the last body that is furthest out.
+/// The link that the SRDF names as the end, or the furthest link of the last body.
 int TipLink(const RobotTree& tree, const Semantics& semantics, const Limb& limb) {
   std::vector<std::string> named = semantics.end_links;
   for (const SemanticGroup& group : semantics.groups) {
@@ -184,8 +184,8 @@ int TipLink(const RobotTree& tree, const Semantics& semantics, const Limb& limb)
   return furthest;
 }
 
-/// Whether two limbs are mirror images as far as one sees: as many joints, each where the other's
-/// is reflected.
+/// Whether two limbs look like mirror images: they have the same number of joints, each at the
+/// reflected position of the other's.
 bool LookAlike(const RobotTree& tree, const std::vector<Transform>& T_root_body, const Limb& a,
                const Limb& b) {
   constexpr double kSamePlace = 0.02, kAside = 0.01;
@@ -215,7 +215,8 @@ void PairMirrors(const RobotTree& tree, std::vector<Limb>& limbs) {
   }
 }
 
-/// Height above the root link of the first joint that is the limb's alone, in the zero posture, m.
+/// Height above the root link, in the zero posture, of the first joint that belongs to this limb
+/// only, m.
 double BeginOf(const RobotTree& tree, const std::vector<Transform>& poses, const Limb& limb) {
   const auto own = std::find_if(limb.joints.begin(), limb.joints.end(), [&](int k) {
     return tree.joints[Size(k)].parent_body == limb.from_body;
@@ -223,7 +224,8 @@ double BeginOf(const RobotTree& tree, const std::vector<Transform>& poses, const
   return own == limb.joints.end() ? 0.0 : poses[Size(*own) + 1].translation().z();
 }
 
-/// Legs are measured from the root link or, where that is a frame on the floor, from the hips.
+/// Finds the legs. Heights are relative to the root link or, where that is a frame on the floor, to
+/// the hips.
 void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb>& limbs) {
   constexpr double kSameFloor = 0.08, kBelow = 0.25;  // of the longest limb
   const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));

@@ -24,7 +24,7 @@ bool IsFile(const fs::path& path) {
   return fs::is_regular_file(path, none);
 }
 
-/// What the folder's package.xml calls it; empty without one.
+/// Name of the package in the folder's package.xml; empty without one.
 std::string PackageName(const fs::path& folder) {
   pugi::xml_document manifest;
   if (!IsFile(folder / "package.xml") || !manifest.load_file((folder / "package.xml").c_str())) {
@@ -33,7 +33,7 @@ std::string PackageName(const fs::path& folder) {
   return manifest.child("package").child_value("name");
 }
 
-/// Folders that may be the package, the likely ones first.
+/// Folders that may be the package, the most likely first.
 std::vector<fs::path> FoldersOf(const std::string& package, const MeshPlaces& places) {
   std::vector<fs::path> folders;
   const auto given = places.packages.find(package);
@@ -56,7 +56,7 @@ std::vector<fs::path> FoldersOf(const std::string& package, const MeshPlaces& pl
   return folders;
 }
 
-/// What follows one of the prefixes; nothing where the name has none of them.
+/// The rest of a name after one of the prefixes; nothing where it has none of them.
 std::optional<std::string> After(const std::string& name,
                                  std::initializer_list<std::string> prefixes) {
   for (const std::string& prefix : prefixes) {
@@ -67,7 +67,7 @@ std::optional<std::string> After(const std::string& name,
 
 Eigen::Vector3d ToVector(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-/// A place in a grid as one number.
+/// A cell of a grid as one number.
 std::int64_t CellOf(const Eigen::Vector3d& p, double size) {
   std::int64_t cell = 0;
   for (const double x : p) {
@@ -95,7 +95,7 @@ std::optional<fs::path> FindMesh(const std::string& name, const MeshPlaces& plac
     return std::nullopt;
   }
   const fs::path path = After(name, {"file://"}).value_or(name);
-  // A text without a place has no neighbours.
+  // A text without a file has no neighbouring files.
   if (path.is_relative() && places.urdf.empty()) return std::nullopt;
   const fs::path file = places.urdf.parent_path() / path;
   return IsFile(file) ? std::optional(file) : std::nullopt;
@@ -145,7 +145,7 @@ std::vector<Eigen::Vector3d> SurfacePoints(const std::vector<Triangle>& triangle
     return std::max(1, static_cast<int>(std::ceil(length / spacing)));
   };
   for (const Triangle& t : triangles) {
-    // The corner opposite to the shortest side: rows across from there are short.
+    // Finds the corner opposite to the shortest side, so that rows of points are short.
     std::size_t apex = 0;
     const auto opposite = [&](std::size_t i) { return (t[(i + 1) % 3] - t[(i + 2) % 3]).norm(); };
     for (std::size_t i = 1; i < 3; ++i) apex = opposite(i) < opposite(apex) ? i : apex;

@@ -12,38 +12,38 @@
 
 namespace elastocal {
 
-/// Where the meshes that a URDF names are looked for.
+/// Places where the meshes named in a URDF are searched.
 struct MeshPlaces {
-  std::filesystem::path urdf;  ///< the file; empty: a text without a place
-  std::map<std::string, std::filesystem::path> packages;  ///< folders of packages by their names
-  std::vector<std::filesystem::path> roots;               ///< folders that hold packages
+  std::filesystem::path urdf;  ///< path of the URDF; empty: a text without a file
+  std::map<std::string, std::filesystem::path> packages;  ///< folders of packages, by name
+  std::vector<std::filesystem::path> roots;               ///< folders that contain packages
 };
 
-/// The file that a URDF means by `name`, or nothing where there is none. `package://NAME/PATH` (and
-/// Gazebo's `model://`) is PATH in the package's folder. In this order, that is the folder given
-/// for NAME; what is called NAME in a root, or the root itself; a folder above the URDF that is
-/// called NAME, has a package.xml for NAME, or holds a folder NAME. Other names are paths, with
-/// `file://` or without, as seen from the URDF.
+/// The file that a URDF means by `name`; nothing where there is none. `package://NAME/PATH` (and
+/// Gazebo's `model://`) is PATH in the package's folder. That folder is, in this order: the one
+/// given for NAME; the folder NAME in a root, or the root itself; a folder above the URDF that is
+/// called NAME, has a package.xml for NAME, or contains a folder NAME. Other names are paths, with
+/// or without `file://`, relative to the URDF.
 std::optional<std::filesystem::path> FindMesh(const std::string& name, const MeshPlaces& places);
 
-/// NAME of `package://NAME/PATH`; empty for other names.
+/// NAME in `package://NAME/PATH`; empty for other names.
 std::string PackageOf(const std::string& name);
 
 using Triangle = std::array<Eigen::Vector3d, 3>;
 
-/// The triangles of a file (STL, OBJ, Collada and what else Assimp reads) in its own frame, in the
-/// unit that it says or else as they are. Collada's up axis is passed over, as RViz does. Where it
-/// cannot be read, none, and `reason` says why.
+/// Reads the triangles of a file (STL, OBJ, Collada and other formats of Assimp) in its own frame,
+/// scaled by the unit that the file states. Collada's up axis is ignored, as RViz does. If the file
+/// cannot be read, returns none, and `reason` says why.
 std::vector<Triangle> ReadMesh(const std::filesystem::path& file, std::string& reason);
 
 /// Volume inside a closed surface, m^3.
 double VolumeOf(const std::vector<Triangle>& triangles);
 
-/// Points on triangles that are not further than `spacing` from each other, their corners included.
+/// Points on triangles at distances of at most `spacing`, corners included.
 std::vector<Eigen::Vector3d> SurfacePoints(const std::vector<Triangle>& triangles, double spacing);
 
-/// At most `most` of the points, evenly spread: of those close to each other the outermost one. All
-/// of them where they are not more.
+/// At most `most` of the points, evenly distributed; of close points the outermost is kept. All of
+/// them if they are not more.
 std::vector<Eigen::Vector3d> ThinOut(const std::vector<Eigen::Vector3d>& points, std::size_t most);
 
 }  // namespace elastocal

@@ -14,7 +14,7 @@ using std::numbers::pi;
 
 constexpr int kAlongEdge = 7, kAround = 16;
 
-/// All points of a grid over a box that are on its surface.
+/// The points of a grid over a box that are on its surface.
 Points BoxPoints(const Eigen::Vector3d& half) {
   Points points;
   const auto at = [](int i) { return 2.0 * i / (kAlongEdge - 1) - 1.0; };

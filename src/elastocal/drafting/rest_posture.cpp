@@ -22,10 +22,10 @@ namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-/// A chain of joints from the root link to a link, placed by damped least squares.
+/// Places a link by a chain of joints from the root link, with damped least squares.
 class Placer {
  public:
-  /// `turned`: the link gets its attitude too, not only its place.
+  /// `turned`: the link also gets its attitude, not only its position.
   Placer(const RobotTree& tree, int link, bool turned, const std::vector<int>& joints,
          Eigen::VectorXd lower, Eigen::VectorXd upper)
       : tree_(tree),
@@ -35,7 +35,8 @@ class Placer {
         lower_(std::move(lower)),
         upper_(std::move(upper)) {}
 
-  /// Moves the joints within their limits until the link has its place, attitude and heading.
+  /// Moves the joints within their limits until the link has the wanted position and, if `turned`,
+  /// attitude.
   bool Place(const Transform& wanted, Eigen::VectorXd& q) const {
     for (const int k : joints_) {
       const int c = tree_.joints[Size(k)].coordinate;
@@ -91,7 +92,7 @@ class Placer {
   Eigen::VectorXd lower_, upper_;
 };
 
-/// Whether all soles are flat (or balls) at one height, and that height.
+/// Whether all soles (or balls) are flat at one height; returns that height.
 bool Flat(const RobotTree& tree, const std::vector<DraftedSole>& soles, const Eigen::VectorXd& q,
           double& height) {
   constexpr double kFlat = 0.035, kSame = 0.01;
@@ -109,7 +110,7 @@ bool Flat(const RobotTree& tree, const std::vector<DraftedSole>& soles, const Ei
   return !soles.empty() && highest - lowest < kSame;
 }
 
-/// The joints of a leg that move no other leg if six or more do not, and all otherwise.
+/// The joints of a leg that move no other leg if there are at least six; otherwise all its joints.
 std::vector<int> OwnJoints(const RobotTree& tree, const Limbs& limbs, const Limb& leg) {
   const auto is_shared = [&](int joint) {
     const int c = tree.joints[Size(joint)].coordinate;
@@ -127,18 +128,18 @@ std::vector<int> OwnJoints(const RobotTree& tree, const Limbs& limbs, const Limb
   return own.size() < kOfAPose ? leg.joints : own;
 }
 
-/// Largest angle of the joints, rad.
+/// Largest absolute angle of the joints, rad.
 double Bend(const RobotTree& tree, const std::vector<int>& joints, const Eigen::VectorXd& q) {
   double bend = 0.0;
   for (const int k : joints) bend = std::max(bend, std::abs(q[tree.joints[Size(k)].coordinate]));
   return bend;
 }
 
-/// `q` with a leg bent so that its foot has its place: at one of its joints, either way.
+/// `q` with a leg bent at one of its joints, in either direction, so that its foot is in place.
 std::optional<Eigen::VectorXd> PlaceBent(const RobotTree& tree, const std::vector<int>& joints,
                                          const Placer& placer, const Transform& wanted,
                                          bool on_ball, const Eigen::VectorXd& q) {
-  constexpr double kKnee = 0.8;  // rad: as two joints ahead and behind then move by half of it
+  constexpr double kKnee = 0.8;  // rad; two joints ahead and behind then move by half of it
   constexpr double kFurther = 0.01;
   std::optional<Eigen::VectorXd> placed;
   for (std::size_t knee = 1; knee + 1 < joints.size() && !placed; ++knee) {
@@ -151,7 +152,7 @@ std::optional<Eigen::VectorXd> PlaceBent(const RobotTree& tree, const std::vecto
       set(knee, bend);
       set(knee + 1, -0.5 * bend);
       if (!placer.Place(wanted, start)) continue;
-      // On a ball the leg can bend either way; bent further, it reaches further.
+      // A leg on a ball can bend in either direction; the more it bends, the further it reaches.
       if (placed && Bend(tree, joints, start) < Bend(tree, joints, *placed) + kFurther) continue;
       placed = start;
       if (!on_ball) break;
@@ -160,8 +161,8 @@ std::optional<Eigen::VectorXd> PlaceBent(const RobotTree& tree, const std::vecto
   return placed;
 }
 
-/// Lowers the root link with the feet where they are in the zero posture, by as much as the legs
-/// allow up to a share of their length. Returns whether they stand.
+/// Lowers the root link, with the feet as in the zero posture, as far as the legs allow, by at most
+/// a share of their length. Returns whether all feet are in place.
 bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<DraftedSole>& soles,
               double most_drop, Eigen::VectorXd& q) {
   constexpr double kStep = 0.01;
@@ -191,7 +192,7 @@ bool BendLegs(const RobotTree& tree, const Limbs& limbs, const std::vector<Draft
 }
 
 /// Moves each joint outside the legs whose motor cannot hold the weight to the nearest position in
-/// which it can, the root link upright. Returns whether one was moved.
+/// which it can, with the root link upright. Returns whether one was moved.
 bool LeanIntoTorques(const RobotTree& tree, const Limbs& limbs, Eigen::VectorXd& q) {
   constexpr double kShare = 0.8;
   constexpr int kSteps = 60, kRounds = 3;
@@ -236,7 +237,7 @@ bool SameWord(const std::string& name, const std::string& word) {
   return letters.find(word) != std::string::npos;
 }
 
-/// The state that robots usually rest in, or null.
+/// The state in which robots usually rest, or null.
 const std::pair<std::string, std::map<std::string, double>>* UsualState(
     const Semantics& semantics) {
   constexpr std::array kUsual = {"halfsitting", "standing", "stand", "ready",
@@ -259,9 +260,9 @@ std::string OutsideLimits(const std::string& state, const Joint& joint, double v
       joint.limits.upper / unit);
 }
 
-/// The zero posture within limits. A joint whose limit is at zero, as that of many elbows is, is
-/// bent by 10 degrees more, at most by an eighth of its range: a straight arm is singular, and
-/// commands that are corrected later need room.
+/// The zero posture within limits. A joint with its limit at zero, like many elbows, is bent by
+/// another 10 degrees, at most by an eighth of its range: a straight arm is singular, and later
+/// corrections of commands need room.
 Eigen::VectorXd AwayFromLimits(const RobotTree& tree, const Eigen::VectorXd& lower,
                                const Eigen::VectorXd& upper) {
   constexpr double kRoom = 10.0 * kRadiansPerDegree, kMostShare = 0.125;
@@ -283,7 +284,7 @@ RestPosture ChooseRest(const RobotTree& tree, const Limbs& limbs,
   constexpr double kMargin = 0.021;
   const auto [lower, upper] = RangesOf(tree, kMargin);
   RestPosture rest;
-  // On legs, knees are bent and hands are held ahead later.
+  // On legs, knees and hands are moved later.
   rest.q = soles.empty() ? AwayFromLimits(tree, lower, upper)
                          : Eigen::VectorXd::Zero(lower.size()).cwiseMax(lower).cwiseMin(upper);
   rest.source = "the zero posture, within the limits";

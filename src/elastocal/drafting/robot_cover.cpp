@@ -15,9 +15,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kCoverTolerance = 0.012;  // of the longest branch: 15 mm on 1.75 m
+constexpr double kCoverTolerance = 0.012;  // share of the longest branch: 15 mm for 1.25 m
 
-/// Covers bodies by spheres that are symmetric where the shapes are.
+/// Covers bodies by spheres, symmetrically where the shapes are symmetric.
 class SymmetricCover {
  public:
   SymmetricCover(const RobotTree& tree, const RobotShapes& shapes, const Limbs& limbs)
@@ -97,8 +97,8 @@ class SymmetricCover {
     return true;
   }
 
-  /// Of symmetric points in the middle: one sphere in the plane of symmetry, or those of one half,
-  /// reflected.
+  /// Covers symmetric points in the middle: by one sphere in the plane of symmetry, or by spheres
+  /// of one half and their reflections.
   std::vector<CollisionSphere> CoverOfMiddle(int body, const std::vector<Eigen::Vector3d>& points,
                                              int most) const {
     std::vector<CollisionSphere> whole = CoverPoints(points, tolerance_, most);
@@ -124,7 +124,7 @@ class SymmetricCover {
     return cover;
   }
 
-  /// The spheres of points in the plane of symmetry, moved there.
+  /// Spheres of points near the plane of symmetry, moved into the plane.
   std::vector<CollisionSphere> CoverInPlane(int body, const std::vector<Eigen::Vector3d>& points,
                                             int most) const {
     std::vector<CollisionSphere> cover = CoverPoints(points, tolerance_, most);
@@ -137,8 +137,8 @@ class SymmetricCover {
     return cover;
   }
 
-  /// The spheres of one shape of a body; of a symmetric body those of its image too, and none of
-  /// what is the image of another shape.
+  /// Spheres of one shape of a body. For a symmetric body they include those of the shape's mirror
+  /// image, and are empty if the shape is itself such an image.
   std::vector<CollisionSphere> CoverPart(int body, const std::vector<Eigen::Vector3d>& part,
                                          bool symmetric, int most) const {
     if (!symmetric) return CoverPoints(part, tolerance_, most);
@@ -158,15 +158,15 @@ class SymmetricCover {
     return cover;
   }
 
-  /// The cover of a body's shapes one by one, if that is much thinner than the cover of all and as
-  /// complete; otherwise the latter.
+  /// The cover of a body shape by shape, if it is much thinner than the cover of all shapes
+  /// together and as complete; otherwise the latter.
   std::vector<CollisionSphere> ShapeByShape(int body, bool symmetric,
                                             std::vector<CollisionSphere>&& whole) const {
     constexpr std::size_t kMostOfParts = 12, kMostParts = 24;
     constexpr double kThinner = 1.5, kSmaller = 0.7;
     const BodyShape& shape = shapes_.bodies[Size(body)];
     if (shape.parts.size() < 2 || shape.parts.size() > kMostParts) return std::move(whole);
-    std::vector<const std::vector<Eigen::Vector3d>*> parts;  // the largest first
+    std::vector<const std::vector<Eigen::Vector3d>*> parts;  // the largest part first
     for (const auto& part : shape.parts) parts.push_back(&part);
     std::ranges::stable_sort(parts, std::greater(),
                              [&](const auto* part) { return FittingRadius(*part, tolerance_); });
@@ -188,7 +188,7 @@ class SymmetricCover {
     return std::move(whole);
   }
 
-  /// Without spheres that are inside others.
+  /// Removes spheres that are inside others.
   std::vector<CollisionSphere> WithoutHidden(const std::vector<CollisionSphere>& spheres) const {
     std::vector<CollisionSphere> seen;
     for (std::size_t i = 0; i < spheres.size(); ++i) {
@@ -212,7 +212,7 @@ class SymmetricCover {
     });
   }
 
-  /// Times 3 / (4 pi).
+  /// Total volume times 3 / (4 pi).
   static double Volume(const std::vector<CollisionSphere>& spheres) {
     double sum = 0.0;
     for (const CollisionSphere& sphere : spheres) sum += std::pow(sphere.radius, 3);
@@ -229,11 +229,11 @@ class SymmetricCover {
   const RobotShapes& shapes_;
   std::vector<Transform> poses_;
   double tolerance_;
-  std::vector<int> image_;  ///< the body on the other side
+  std::vector<int> image_;  ///< index of the mirrored body
   std::vector<std::vector<CollisionSphere>> covers_;
 };
 
-/// The shapes with those of fingers added to the hands.
+/// The shapes, with those of fingers added to the hands.
 RobotShapes WithFingers(const RobotTree& tree, const RobotShapes& shapes, const Limbs& limbs,
                         const Eigen::VectorXd& rest) {
   RobotShapes joined = shapes;

@@ -17,23 +17,23 @@
 namespace elastocal {
 namespace {
 
-// Of a foot of which nothing is known, as shares of the leg's length: how far the sole is below the
-// last joint and how far it reaches backwards, ahead and to either side.
+// Shares of the leg's length, for a foot of which nothing is known: height of the last joint above
+// the sole, and reach of the sole backwards, ahead and to either side.
 constexpr double kFootHeight = 0.12, kHeel = 0.10, kToe = 0.17, kHalfWidth = 0.075;
 
 struct FootPoints {
-  std::vector<Eigen::Vector3d> root;  ///< of the shapes, in the root link's frame, m
+  std::vector<Eigen::Vector3d> root;  ///< points of the shapes in the root link's frame, m
   double floor = std::numeric_limits<double>::infinity();
 };
 
-/// Whether a name says that the link is a sole.
+/// Whether the name is that of a sole.
 bool NamedSole(const std::string& name) {
   const std::vector<std::string> words = WordsOf(name);
   return std::find(words.begin(), words.end(), "sole") != words.end();
 }
 
-/// A link of the foot's body that lies flat at this height, or nothing: of those, one that is
-/// called so, else the lowest.
+/// A link of the foot's body that lies flat at this height: one that is named as a sole, else the
+/// lowest; nothing if there is none.
 std::optional<int> FlatLink(const RobotTree& tree, int body, const std::vector<Transform>& T_root,
                             double lowest, double highest) {
   constexpr double kFlat = 0.01;
@@ -56,7 +56,7 @@ std::optional<int> FlatLink(const RobotTree& tree, int body, const std::vector<T
   return best;
 }
 
-/// Text in an attribute of XML.
+/// A text for an attribute in XML.
 std::string XmlEscaped(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -65,7 +65,7 @@ std::string XmlEscaped(const std::string& text) {
   return escaped;
 }
 
-/// A name that no link has yet.
+/// A name that no link has.
 std::string NewLinkName(const RobotTree& tree, const std::string& wanted) {
   std::string name = wanted;
   const auto known = [&](const Link& link) { return link.name == name; };
@@ -75,8 +75,8 @@ std::string NewLinkName(const RobotTree& tree, const std::string& wanted) {
   return name;
 }
 
-/// Whether what touches the floor is large enough for a foot of a leg of this length: at least a
-/// quarter of the usual size. A mark at the foot's middle is none (EngineAI PM01: a ball of 20 mm).
+/// Whether the touching area is large enough for a foot of a leg of this length: at least a quarter
+/// of the usual size. A mark at the foot's centre is no foot (EngineAI PM01: a ball of 20 mm).
 bool IsFoot(const FootPoints& foot, double thickness, double length) {
   constexpr double kLeastShare = 0.25;
   Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
@@ -90,7 +90,7 @@ bool IsFoot(const FootPoints& foot, double thickness, double length) {
   return ((most - least).array() > kLeastShare * length * usual.array()).all();
 }
 
-/// The rectangle that touches the floor, seen from the sole's frame.
+/// Measures the rectangle that touches the floor, in the sole's frame.
 void MeasureSole(const FootPoints& foot, const Transform& T_root_sole, double thickness,
                  DraftedSole& sole) {
   sole.lower.setConstant(std::numeric_limits<double>::infinity());
@@ -103,19 +103,19 @@ void MeasureSole(const FootPoints& foot, const Transform& T_root_sole, double th
   }
 }
 
-/// A sole that is known: its height in the root link's frame, and what of it touches the floor.
+/// A known sole: its height in the root link's frame, and the points that touch the floor.
 struct KnownSole {
   double height = 0.0;
   Eigen::Vector2d lower, upper;
 };
 
-/// `other`: the sole of the leg's mirror image, where only that one's foot has a shape.
+/// `other` is the sole of the mirrored leg, if only that leg's foot has a shape.
 DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& limb,
                      const std::vector<Transform>& T_root_link,
                      const std::optional<KnownSole>& other = {}) {
   constexpr double kThickness = 0.005, kSamePlane = 0.003;
-  // Of the leg's length: frames nearer to the ankle are of rods and sensors (Unitree R1: 0.015),
-  // soles are further below (Unitree G1: 0.06).
+  // Share of the leg's length: frames closer to the ankle belong to rods and sensors (Unitree R1:
+  // 0.015), soles are further below (Unitree G1: 0.06).
   constexpr double kLeastFoot = 0.03;
   const Transform& T_root_body = T_root_link[Size(BodyLink(tree, limb.tip_body))];
   const Transform& T_root_hip = T_root_link[Size(tree.joints[Size(limb.joints[0])].child_link)];
@@ -164,10 +164,11 @@ DraftedSole FindSole(const RobotTree& tree, const BodyShape& shape, const Limb& 
   return sole;
 }
 
-/// The foot of a leg that can place it and not turn it, about the limb's tip.
+/// The foot, about the limb's tip, of a leg that can place its foot but not rotate it.
 DraftedSole FindBall(const RobotTree& tree, const BodyShape& shape, const Limb& limb,
                      const std::vector<Transform>& T_root_link) {
-  constexpr double kThickest = 0.2;  // of the leg's length: more is no ball about the tip
+  // Share of the leg's length: a thicker foot is no ball about the tip.
+  constexpr double kThickest = 0.2;
   const Transform& T_root_body = T_root_link[Size(BodyLink(tree, limb.tip_body))];
   const double tip = T_root_link[Size(limb.tip_link)].translation().z();
   const double hip =
@@ -202,7 +203,7 @@ std::vector<DraftedSole> FindSoles(const RobotTree& tree, const RobotShapes& sha
                          : FindSole(tree, shape_of(limb), limb, T_root_link));
     soles.back().limb = static_cast<int>(i);
   }
-  // The foot of one leg may have a shape where that of its mirror image has none.
+  // The foot of one leg may have a shape while that of its mirror image has none.
   for (DraftedSole& sole : soles) {
     const Limb& limb = limbs.limbs[Size(sole.limb)];
     if (!sole.guessed_size || sole.ball_radius || limb.mirror < 0) continue;
@@ -222,7 +223,7 @@ std::vector<DraftedSole> FindSoles(const RobotTree& tree, const RobotShapes& sha
 
 std::optional<double> ChooseStance(const RobotTree& tree, const Limbs& limbs,
                                    const std::vector<DraftedSole>& soles) {
-  constexpr double kRoom = 0.08;  // between the soles, as a share of the height of the leg
+  constexpr double kRoom = 0.08;  // gap between the soles, as a share of the leg's height
   if (soles.size() != 2) return {};
   const auto T_root_link = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
   const auto corners = [&](const DraftedSole& sole) {

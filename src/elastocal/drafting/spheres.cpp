@@ -62,15 +62,17 @@ std::size_t Nearest(const std::vector<Eigen::Vector3d>& centres, const Eigen::Ve
   return nearest;
 }
 
-/// Balls around groups of points: groups by the nearest centre, centres of balls in turn.
+/// Balls around groups of points. Each point belongs to the nearest centre; centres and groups are
+/// updated in turn.
 std::vector<CollisionSphere> Balls(const Points3& all, int count) {
   constexpr int kRounds = 12;
-  constexpr std::size_t kEnough = 1200;  // to find the centres by; the radii reach all
+  // Points that determine the centres; the radii enclose all points.
+  constexpr std::size_t kEnough = 1200;
   const Points3 points = ThinOut(all, kEnough);
   std::vector<Eigen::Vector3d> centres = {BallCentre(points)};
   if (count > 1) centres.clear();
   Eigen::Vector3d next = points.front();
-  while (static_cast<int>(centres.size()) < count) {  // far from each other
+  while (static_cast<int>(centres.size()) < count) {  // new centres are far from the others
     double furthest = -1.0;
     for (const Eigen::Vector3d& p : points) {
       double d =
@@ -112,7 +114,7 @@ double LargestRadius(const std::vector<CollisionSphere>& balls) {
   return largest;
 }
 
-/// Whether the SRDF says of links of two bodies that nobody has to check them.
+/// Whether the SRDF excludes links of the two bodies from collision checks.
 bool LeftOutBySemantics(const RobotTree& tree, const Semantics& semantics, int a, int b) {
   return std::any_of(semantics.apart.begin(), semantics.apart.end(), [&](const auto& pair) {
     const auto body = [&](const std::string& name) {
@@ -126,8 +128,8 @@ bool LeftOutBySemantics(const RobotTree& tree, const Semantics& semantics, int a
   });
 }
 
-/// Whether one body carries the other with at most one body in between, so that their shapes lie
-/// against each other.
+/// Whether one body carries the other with at most one body in between, so that their shapes touch
+/// by design.
 bool Neighbours(const RobotTree& tree, int a, int b) {
   const auto carrier = [&](int body) {
     return body == 0 ? -1 : tree.joints[Size(body - 1)].parent_body;
@@ -137,8 +139,7 @@ bool Neighbours(const RobotTree& tree, int a, int b) {
          (carrier(b) >= 0 && carrier(carrier(b)) == a);
 }
 
-/// Whether all joints between two bodies are prismatic, with parallel axes: sections of a
-/// telescope.
+/// Whether all joints between two bodies are prismatic with parallel axes, as in a telescope.
 bool SlideAlongEachOther(const RobotTree& tree, int one, int other) {
   const std::vector<int> to_one = JointsToBody(tree, one), to_other = JointsToBody(tree, other);
   std::vector<int> between;
@@ -159,7 +160,7 @@ bool SlideAlongEachOther(const RobotTree& tree, int one, int other) {
   });
 }
 
-/// Whether a place of the chain's tip is in its box made wider by a quarter.
+/// Whether a position of the chain's tip is in its box enlarged by a quarter.
 bool NearBox(const ChainSetup& chain, const Eigen::Vector3d& tip) {
   constexpr double kWider = 0.25;
   if (!chain.box) return true;
@@ -171,7 +172,7 @@ bool NearBox(const ChainSetup& chain, const Eigen::Vector3d& tip) {
 }  // namespace
 
 double FittingRadius(const Points3& points, double tolerance) {
-  // A rod is covered by balls of its thickness, a plate by balls as wide as its shorter side.
+  // Balls have the thickness of a rod, or the width of the shorter side of a plate.
   return 1.15 * HalfExtents(points)[1] + 2.0 * tolerance;
 }
 

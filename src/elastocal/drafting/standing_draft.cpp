@@ -17,7 +17,7 @@
 namespace elastocal {
 namespace {
 
-/// The robot of the draft on its feet. Throws InputError if it cannot stand on them.
+/// The drafted robot on its feet. Throws InputError if it cannot stand on them.
 std::unique_ptr<StandingRobot> StandDraft(const ProjectDraft& draft) {
   std::vector<Sole> soles;
   for (const DraftedSole& sole : draft.soles) {
@@ -32,7 +32,8 @@ std::unique_ptr<StandingRobot> StandDraft(const ProjectDraft& draft) {
   return robot;
 }
 
-/// The same; nothing if it cannot stand: with the hands ahead, `plan` will say why.
+/// As StandDraft, but empty if it cannot stand, for example with the hands ahead; `plan` then tells
+/// the reason.
 std::unique_ptr<StandingRobot> TryStandDraft(const ProjectDraft& draft) {
   if (!draft.stands) return nullptr;
   try {
@@ -42,8 +43,8 @@ std::unique_ptr<StandingRobot> TryStandDraft(const ProjectDraft& draft) {
   }
 }
 
-/// The posture in which the robot stands on all feet with the weight over the fewest, without
-/// `swings`; nothing if its legs do not reach so far.
+/// The posture in which the robot stands on all feet with its weight over those that stand while
+/// the foot `swings` is lifted (StandingRobot::AllFeetBut); empty if its legs do not reach so far.
 std::optional<PlacedPosture> OverFewest(const StandingRobot& robot, int swings) {
   const std::vector<int> fewest =
       robot.soles.size() > 1 ? robot.AllFeetBut(swings) : robot.AllFeet();
@@ -54,7 +55,7 @@ std::optional<PlacedPosture> OverFewest(const StandingRobot& robot, int swings) 
   return over;
 }
 
-/// The robot lifts a foot once, as `plan` does. Without a motion if it cannot.
+/// The robot lifts a foot once, as `plan` does; without a motion if it cannot.
 PlannedTour LiftOnce(const StandingRobot& robot, int foot) {
   PostureTour step;
   step.standing = robot.AllFeetBut(foot);
@@ -62,7 +63,7 @@ PlannedTour LiftOnce(const StandingRobot& robot, int foot) {
   return PlanTour(robot, step, {});
 }
 
-/// Why a robot does not stand; `why` is empty if it does.
+/// Reason why a robot does not stand; `why` is empty if it does.
 struct Refused {
   std::string why;
   bool weak = false;  ///< its motors are too weak
@@ -94,8 +95,8 @@ Refused LiftRefused(const StandingRobot& robot, int foot) {
   return refused;
 }
 
-/// Whether the robot of the draft can stand as `plan` asks, with the draft's share of its motors'
-/// efforts or less.
+/// Finds out whether the drafted robot can stand as `plan` requires, with at most this share of its
+/// motors' efforts.
 Refused StandRefused(const ProjectDraft& draft, double torque_share) {
   if (draft.soles.empty()) return {};
   if (!draft.rest.stands) {
@@ -116,11 +117,11 @@ Refused StandRefused(const ProjectDraft& draft, double torque_share) {
 }  // namespace
 
 void RestOnFeet(ProjectDraft& draft, const Semantics& semantics) {
-  // How far the root link is lowered where the usual posture does not do: a leg that is nearly
-  // straight cannot follow the weight; an ankle that bends little, or a weak motor, leaves a leg
-  // nearly straight. These need as little effort as the postures that will be designed.
+  // Shares by which the root link is lowered if the usual posture fails. A leg that is nearly
+  // straight cannot follow the weight; an ankle that bends little, or a weak motor, requires a
+  // nearly straight leg. These postures need as little effort as those that will be designed.
   const std::vector<double> less = {0.04, 0.02}, any = {0.10, 0.15, 0.20, 0.25, 0.04, 0.02};
-  // Of the motors' efforts, where nothing else helps: the rest is for errors of the masses.
+  // Share of the motors' efforts if nothing else helps: the rest is for errors of the masses.
   constexpr double kNearlyAll = 0.97;
   const auto refused_at = [&](double drop, double torque_share) {
     draft.rest = ChooseRest(draft.tree, draft.limbs, draft.soles, semantics, drop);

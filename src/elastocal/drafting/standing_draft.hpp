@@ -10,18 +10,19 @@
 
 namespace elastocal {
 
-/// Chooses the posture of rest, and whether the robot balances in it as `plan` does, shifting its
-/// weight from foot to foot and lifting each once; if not, why. Legs that do not reach far enough
-/// are bent further than usual, and those whose ankles do not bend so far less.
+/// Chooses the posture of rest, and finds out whether the robot balances in it as `plan` requires:
+/// it shifts its weight from foot to foot and lifts each once. If not, stores the reason. Legs that
+/// do not reach far enough are bent further than usual, and legs whose ankles do not bend so far
+/// are bent less.
 void RestOnFeet(ProjectDraft& draft, const Semantics& semantics);
 
-/// Sets how far joints above the legs, which carry them all, can move while all feet keep their
-/// places on the floor: the legs' own joints have to move against them.
+/// Sets the range of joints that carry all legs, within which all feet can keep their places on the
+/// floor while the legs' own joints compensate.
 void NarrowWaist(ProjectDraft& draft);
 
-/// The posture of rest and, of a robot that balances, those in which it stands on its feet with the
-/// weight over all and over the fewest of them, and lifts each: its parts do not touch in them,
-/// whatever the spheres that cover them do.
+/// Postures of rest: the drafted one and, for a robot that balances, those in which it stands with
+/// its weight over all and over the fewest feet and lifts each. The robot's parts do not touch in
+/// them, even if their covering spheres do.
 std::vector<Eigen::VectorXd> RestingPostures(const ProjectDraft& draft);
 
 }  // namespace elastocal

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kHandCone = 60.0 * kRadiansPerDegree;
 
-/// Places of a chain's tip in random postures, all else at rest, in the root link's frame, m.
+/// Positions of a chain's tip in random postures, with all else at rest, in the root link's frame,
+/// m.
 std::vector<Eigen::Vector3d> TipPlaces(const RobotTree& tree, const ChainSetup& setup,
                                        const Eigen::VectorXd& rest) {
   constexpr int kPostures = 1000;
@@ -29,7 +30,7 @@ std::vector<Eigen::Vector3d> TipPlaces(const RobotTree& tree, const ChainSetup& 
   return places;
 }
 
-/// Rounds a box outwards to whole centimetres and makes it at least 4 cm wide.
+/// Rounds a box outwards to whole centimetres, and enlarges it to at least 4 cm.
 Box RoundedBox(Box box) {
   constexpr double kStep = 0.01, kLeast = 0.02;
   const Eigen::Vector3d middle = 0.5 * (box.lower + box.upper);
@@ -40,7 +41,7 @@ Box RoundedBox(Box box) {
   return box;
 }
 
-/// The share of places in a box.
+/// Share of the positions that are in a box.
 double ShareInside(const Box& box, const std::vector<Eigen::Vector3d>& places) {
   const auto inside = std::count_if(places.begin(), places.end(), [&](const Eigen::Vector3d& p) {
     return (p.array() >= box.lower.array()).all() && (p.array() <= box.upper.array()).all();
@@ -48,7 +49,7 @@ double ShareInside(const Box& box, const std::vector<Eigen::Vector3d>& places) {
   return static_cast<double>(inside) / static_cast<double>(places.size());
 }
 
-/// The box without the outermost twentieth of the places on either side of each axis.
+/// The box without the outermost twentieth of the positions on either side of each axis.
 Box Middle(std::vector<Eigen::Vector3d> places) {
   constexpr double kOut = 0.05;
   Box box{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
@@ -66,10 +67,10 @@ Box Middle(std::vector<Eigen::Vector3d> places) {
 
 void SetLegWorkspace(const RobotTree& tree, const Limb& limb, const RestPosture& rest,
                      ChainSetup& setup) {
-  // Shares of the height of the root link over straight legs (Fig. 2a of the paper).
+  // Shares of the height of the root link above straight legs (Fig. 2a of the paper).
   constexpr double kAhead = 0.32, kInwards = 0.125, kOutwards = 0.25;
   constexpr double kLowest = 0.997, kHighest = 0.60, kAboveFloor = 0.018;
-  constexpr double kHighestBall = 0.40;  // of the height at rest, where knees are bent far
+  constexpr double kHighestBall = 0.40;  // share of the height at rest, where knees are bent far
   constexpr double kEnough = 0.01;
   const auto zero = LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
   const Eigen::Vector3d foot = zero[Size(setup.tip_link)].translation();

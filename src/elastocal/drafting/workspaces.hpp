@@ -6,14 +6,14 @@
 
 namespace elastocal {
 
-/// Where the tip of a leg may swing while the robot stands on the others: in a box around its place
-/// in the posture of rest, turned by at most 60 degrees, above the floor. The box of a humanoid of
-/// usual build is that of the paper's Fig. 2a, as shares of the height of the root link.
+/// Sets the workspace of a leg's tip while the robot stands on the others: a box around its place
+/// in the posture of rest, rotations of at most 60 degrees, above the floor. For a humanoid of
+/// usual build the box is that of the paper's Fig. 2a, in shares of the height of the root link.
 void SetLegWorkspace(const RobotTree& tree, const Limb& limb, const RestPosture& rest,
                      ChainSetup& setup);
 
-/// Where the tip of another limb may be: in a box that holds nine tenths of what random postures
-/// reach and, for an arm of a robot that stands on legs, is in front of it.
+/// Sets the workspace of another limb's tip: a box that contains nine tenths of the positions in
+/// random postures and, for an arm of a robot on legs, lies in front of it.
 void SetArmWorkspace(const RobotTree& tree, const Limb& limb, const RestPosture& rest, bool on_legs,
                      ChainSetup& setup);
 

@@ -28,13 +28,13 @@
 namespace elastocal {
 namespace {
 
-/// Stands with the version in a comment of every exported file: by it IsExported knows them.
+/// Part of the comment with the version in every exported file, by which IsExported recognises it.
 constexpr const char* kMadeBy = "Made by elastocal ";
 
 constexpr const char* kBesideSprings =
     "Geometry of the elastic model: for programs that correct elasticity themselves";
 
-/// A name as XML and YAML take it, and C.
+/// Converts a name to one that is valid in C.
 std::string CPrefix(const std::string& name) {
   std::string prefix;
   for (unsigned char c : name) {
@@ -46,7 +46,7 @@ std::string CPrefix(const std::string& name) {
   return prefix;
 }
 
-/// What the header says of each joint and leg: its errors with unit and standard deviation.
+/// Comments of the header on each joint and leg: errors with unit and standard deviation.
 std::map<std::string, std::vector<std::string>> ParameterComments(
     const CalibrationEstimate& estimate) {
   std::map<std::string, std::vector<std::string>> comments;
@@ -81,12 +81,12 @@ bool HasSprings(const ExportOptions& options) {
          (format == "mjcf" && options.mjcf_springs);
 }
 
-/// Whether what is exported goes with compliances, in the same file or beside it.
+/// Whether the export is used with compliances, in the same file or beside it.
 bool HasLoads(const ExportOptions& options) {
   return HasSprings(options) || options.beside_springs;
 }
 
-/// Whether it is the calibrated URDF in another form.
+/// Whether the format is another form of the calibrated URDF.
 bool IsRigid(const ExportOptions& options) {
   return !HasLoads(options) && options.format != "linkages";
 }
@@ -116,14 +116,14 @@ std::string MjcfOf(const CalibratedRobot& robot, const StoredCalibration& calibr
   return MoveMjcf(text, file, options.mjcf.parent_path(), options.output.parent_path());
 }
 
-/// What of a calibration is exported.
+/// The part of a calibration that is exported.
 struct Kept {
-  StoredCalibration calibration;      ///< joints that stay nominal without errors
-  std::set<std::string> nominal;      ///< these joints and legs
-  std::vector<std::string> comments;  ///< which, and why
+  StoredCalibration calibration;      ///< without the errors of joints that stay nominal
+  std::set<std::string> nominal;      ///< joints and legs that stay nominal
+  std::vector<std::string> comments;  ///< names of these joints, with the reason
 };
 
-/// Joints and legs of which it hardly tells anything.
+/// Joints and legs whose errors are hardly determined.
 std::set<std::string> Insignificant(const CalibrationEstimate& estimate, double least) {
   std::map<std::string, double> largest;
   for (const ParameterEstimate& parameter : estimate.parameters) {
@@ -167,12 +167,12 @@ Kept KeepWhatHelps(const CalibratedRobot& robot, const CalibrationEstimate& esti
   return kept;
 }
 
-/// Comments in front of what an XML file holds.
+/// The text of an XML file with comments at its beginning.
 std::string WithXmlComment(const std::string& text, const std::string& source,
                            const std::vector<std::string>& comments) {
   const XmlText xml(text, source);
   std::string comment = XmlComment(comments);
-  comment.pop_back();  // the line end, which the text has
+  comment.pop_back();  // the line end, which the text has already
   return ApplyEdits(text, {InsertElement(text, xml.Root(), comment)});
 }
 
@@ -188,7 +188,7 @@ std::string CHeaderOf(const CalibratedRobot& robot, const Kept& kept,
                      {prefix, heading, ParameterComments(estimate), {}});
 }
 
-/// With the comments behind the line that tells the format.
+/// The text with comments after the line that tells the format.
 std::string RuntimeFileOf(const CalibratedRobot& robot, const Kept& kept,
                           const std::vector<std::string>& heading) {
   std::ostringstream out;
@@ -206,7 +206,7 @@ std::string LinkagesOf(const CalibratedRobot& robot, const Kept& kept,
          MakeLinkagesYaml(ResultOf(RestoreRobot(robot.project, kept.calibration)));
 }
 
-/// The estimates without those of joints that stay nominal.
+/// The estimate without the errors of joints that stay nominal.
 CalibrationEstimate Exported(CalibrationEstimate estimate, const std::set<std::string>& nominal) {
   std::erase_if(estimate.parameters, [&](const ParameterEstimate& parameter) {
     return nominal.contains(OwnerName(parameter.name));

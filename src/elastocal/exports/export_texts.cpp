@@ -19,19 +19,19 @@ namespace {
 
 constexpr int kHipJoints = 3;
 constexpr double kAlong = 0.9;  // cosine between the axis of a hip's joint and z, x or y
-/// Axes of a hip's joints, and those that flex-joints bends about, in its order.
+/// Axes of a hip's joints; flex-joints uses the last two in reverse order.
 constexpr std::array<int, kHipJoints> kHipAxes = {2, 0, 1};
 constexpr std::array<int, 2> kFlexAxes = {1, 0};
 
 /// A sum of compliances about one axis, rad/(N.m).
 struct SummedCompliance {
   bool estimated = false;
-  double value = 0.0, half_width = 0.0;  ///< of its 95 % interval
+  double value = 0.0, half_width = 0.0;  ///< half width of its 95 % interval
 
   double Stiffness() const { return 1.0 / value; }
 };
 
-/// The legs with the left one (y to the left of the root link) first.
+/// The two legs, the left one (y to the left of the root link) first.
 std::array<const Leg*, 2> LeftAndRight(const std::vector<Leg>& legs,
                                        const std::vector<Transform>& T_root_link) {
   if (legs.size() != 2) {
@@ -58,7 +58,7 @@ void CheckHip(const RobotTree& tree, const Leg& leg, const std::vector<Transform
   }
 }
 
-/// By parameter name: squares of the cosines between the springs of a hip and an axis of the root.
+/// By parameter name: square of the cosine between the spring's axis and an axis of the root link.
 std::map<std::string, double> HipWeights(const std::vector<SeriesSpring>& springs, const Leg& leg,
                                          const RobotTree& tree, int axis,
                                          const std::vector<Transform>& T_root_link) {
@@ -77,12 +77,12 @@ std::map<std::string, double> HipWeights(const std::vector<SeriesSpring>& spring
   return weights;
 }
 
-/// Sum of estimates with weights, and its interval by the covariance as far as it is known.
+/// Weighted sum of estimates, with its interval by the covariance as far as it is known.
 SummedCompliance Sum(const CalibrationEstimate& estimate,
                      const std::map<std::string, double>& weights) {
   SummedCompliance sum;
   Eigen::VectorXd row = Eigen::VectorXd::Zero(estimate.covariance.rows());
-  double alone = 0.0;  // variance of those that are not in the covariance
+  double alone = 0.0;  // variance of the estimates that are not in the covariance
   for (const ParameterEstimate& parameter : estimate.parameters) {
     const auto weight = weights.find(parameter.name);
     if (weight == weights.end()) continue;
@@ -117,7 +117,7 @@ std::string Interval(const SummedCompliance& sum) {
 std::string YamlComment(const std::vector<std::string>& lines) {
   std::string text;
   for (std::string line : lines) {
-    std::ranges::replace(line, '\n', ' ');  // of a file's name: the comment would end there
+    std::ranges::replace(line, '\n', ' ');  // a line end in a file name would end the comment
     text += "# " + line + "\n";
   }
   return text;
@@ -126,7 +126,7 @@ std::string YamlComment(const std::vector<std::string>& lines) {
 std::string XmlComment(const std::vector<std::string>& lines) {
   std::string text = fmt::format("{}", fmt::join(lines, "\n     "));
   for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at)) {
-    text.replace(at, 2, "- -");  // which would end the comment
+    text.replace(at, 2, "- -");  // "--" would end the comment
   }
   return "<!-- " + text + " -->\n";
 }
@@ -179,7 +179,7 @@ std::string MakeFlexJointsYaml(const CalibrationResult& result, const RobotTree&
                                const std::vector<std::string>& heading) {
   const std::vector<Transform> T_root_link =
       LinkTransforms(calibrated, Eigen::VectorXd::Zero(calibrated.coordinate_count()));
-  // Springs of all compliances of the calibration, with unit compliance: for their axes.
+  // Springs with unit compliance for all compliances of the calibration, which give their axes.
   CalibrationResult unit = result;
   for (int i = 0; i < unit.model.parameter_count(); ++i) {
     if (IsCompliance(unit.model.parameters[static_cast<std::size_t>(i)].kind)) unit.delta[i] = 1.0;

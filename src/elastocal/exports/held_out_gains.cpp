@@ -20,11 +20,11 @@ namespace {
 
 constexpr int kGainFolds = 5;
 constexpr int kLeastGainPostures = 10;
-/// A place further than so many standard deviations from where the calibration has the marker is
-/// none that the calibration was made with.
+/// A position that is further from the calibrated marker than this number of standard deviations
+/// was not used by the calibration.
 constexpr double kMeasuredThere = 5.0;
 
-/// The estimate as stored, judged by trials for validation.
+/// The stored estimate, judged by trials for validation.
 HeldOutSplit StoredSplit(const RecordedModel& recorded, Measurements measured,
                          const StoredCalibration& stored, bool with_loads) {
   HeldOutSplit split;
@@ -38,7 +38,7 @@ HeldOutSplit StoredSplit(const RecordedModel& recorded, Measurements measured,
   return split;
 }
 
-/// Estimates without a fold each, judged by it.
+/// For each fold: the estimate without it, judged by it.
 std::vector<HeldOutSplit> FoldSplits(const RecordedModel& recorded, const Recording& recording,
                                      const std::vector<MarkerMeasurement>& places,
                                      const CalibrationOptions& options) {
@@ -60,7 +60,7 @@ std::vector<HeldOutSplit> FoldSplits(const RecordedModel& recorded, const Record
     split.held_out = SelectPostures(recording, held_out);
     split.same_trials = folds.unit == FoldUnit::kPosture;
     CalibrationOptions fold_options = options;
-    std::vector<std::string> warnings;  // those of the calibration say it
+    std::vector<std::string> warnings;  // the calibration has given the same warnings
     CalibrationResult result =
         CalibrateWithPlaces(places, recorded, split.training, fold_options, warnings);
     split.model = std::move(result.model);
@@ -70,7 +70,7 @@ std::vector<HeldOutSplit> FoldSplits(const RecordedModel& recorded, const Record
   return splits;
 }
 
-/// Markers that a calibration has where they were measured.
+/// Markers that are where they were measured, according to the calibration.
 std::set<std::string> MeasuredMarkers(const std::vector<MarkerMeasurement>& places,
                                       const ErrorModel& model, const Eigen::VectorXd& estimate) {
   std::set<std::string> measured;

@@ -8,7 +8,7 @@
 
 namespace elastocal {
 
-/// Which joints of a stored calibration help on data that it was not estimated from.
+/// Gains of a stored calibration's joints on data from which it was not estimated.
 struct HeldOutGains {
   GainStudy study;
   std::string judged_on;  ///< "2 held-out trials" or "30 postures, each without the fifth that ..."
@@ -18,20 +18,20 @@ struct HeldOutGains {
 /// StudyGains for a calibration and the recordings that its record names.
 ///
 /// - Recordings with trials for validation: these judge the stored estimate.
-/// - Others are cut into five folds, of whole trials where there are five or more, else of postures
-///   (nearly equal ones together). Each is judged by the estimate of the other four, which is made
-///   anew. That takes as long as five calibrations.
+/// - Others are divided into five folds: of whole trials if there are at least five, else of
+///   postures (nearly equal ones together). Each fold is judged by a new estimate from the other
+///   four. This takes as long as five calibrations.
 ///
-/// Places of markers that calibrate was told (--marker-places) are told to folds too, and these
-/// markers stay there where a joint returns to nominal: the zero of a wrist then is a gain.
-/// Mistakes of the recording that calibrate undid (AcceptMistakes) are not undone here, and folds
-/// know no earlier calibration.
+/// Marker positions that calibrate was given (--marker-places) are also given to the folds. These
+/// markers stay where they are when a joint returns to nominal, so that the zero of a wrist can be
+/// a gain. Mistakes of the recording that calibrate corrected (AcceptMistakes) are not corrected
+/// here, and folds know no earlier calibration.
 ///
-/// Throws InputError: a project without markers; what RecordedRecordings and ReadMeasurements
-/// refuse; a calibration of another robot; fewer than ten postures.
+/// Throws InputError for a project without markers, as RecordedRecordings and ReadMeasurements, for
+/// a calibration of another robot, and for fewer than ten postures.
 HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& options);
 
-/// What came of it, a line each: the figures, then the joints that stay nominal, and why.
+/// The result, a line each: the figures, then the joints that stay nominal, with the reason.
 std::vector<std::string> DescribeGains(const HeldOutGains& gains);
 
 }  // namespace elastocal

@@ -9,9 +9,9 @@
 
 namespace elastocal {
 
-/// Hands and feet whose last joint has a turn about its axis, or a place along it, that nothing has
-/// told (status unsupported). The first line says what would tell them, each further one which
-/// frame is open by how much; no lines where there is no such frame.
+/// Describes hands and feet whose last joint has a rotation about its axis, or a translation along
+/// it, that is not determined (status unsupported). The first line says what would determine them,
+/// each further line which frame is uncertain by how much. Empty where there is no such frame.
 std::vector<std::string> DescribeOpenFrames(const Project& project,
                                             const CalibrationEstimate& estimate);
 

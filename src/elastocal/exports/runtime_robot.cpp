@@ -29,7 +29,7 @@ ec_pose ToPose(const Transform& T) {
   return pose;
 }
 
-/// A joint straight from the URDF: its twisted frame has z along the axis, and no errors.
+/// A joint of the URDF: its twisted frame has z along the axis, and no errors.
 ec_joint UrdfJoint(const RobotTree& tree, const Joint& joint) {
   Transform R_child_twisted = Transform::Identity();
   R_child_twisted.linear() = RotationBetween(Eigen::Vector3d::UnitZ(), joint.axis);
@@ -105,7 +105,7 @@ void AddJoints(const StoredRobot& robot, RuntimeContent content, RuntimeModel& m
   }
 }
 
-/// The function of the posture by which a correction shifts a joint; nothing where it depends on
+/// The function of the posture by which a correction displaces a joint; nothing where it depends on
 /// more than motion and loads.
 std::optional<int> ShiftFunction(CorrectionShape shape) {
   switch (shape) {
@@ -145,8 +145,8 @@ void AddLinks(const RobotTree& tree, RuntimeModel& model) {
   }
 }
 
-/// What the weights were found to be: a mass acts at the body's nominal centre, a first moment
-/// along an axis of the link on its joint.
+/// Applies a correction of weights: a mass acts at the body's nominal centre, a first moment along
+/// an axis of the link on its joint.
 void CorrectWeights(const RobotTree& tree, const Correction& correction, double value,
                     RuntimeModel& model) {
   if (correction.shape == CorrectionShape::kGravityTilt) {
@@ -166,7 +166,7 @@ void CorrectWeights(const RobotTree& tree, const Correction& correction, double 
   for (int i = 0; i < 3; ++i) model.moment[3 * body + Size(i)] += value * added[i];
 }
 
-/// What the calibration found beside geometry and springs, as far as motion and loads tell it.
+/// Applies the causes that the calibration found, as far as they depend on motion and loads only.
 void ApplyCauses(const RobotTree& tree, const StoredCalibration& calibration, RuntimeModel& model) {
   for (const Correction& correction : PossibleCorrections(tree, std::nullopt)) {
     const auto found = calibration.joint_errors.find(correction.name);
@@ -194,7 +194,7 @@ std::vector<NamedChain> ChainNames(const Project& project) {
   return chains;
 }
 
-/// Where a root link that was held while a table of postures was measured had gravity.
+/// Sets the direction of gravity for a root link that was held while a posture table was measured.
 void SetGravity(const ErrorModel& nominal, const StoredCalibration& calibration,
                 RuntimeModel& model) {
   if (!calibration.T_ref_waist) return;
@@ -227,7 +227,7 @@ ec_foot MakeFoot(const Project& project, const StoredRobot& robot, const Leg& le
   return foot;
 }
 
-/// The bodies of each leg: those beyond its first joint that is no other leg's.
+/// Marks the bodies of each leg: those beyond its first joint that belongs to no other leg.
 void MarkLegs(const RobotTree& tree, const std::vector<Leg>& legs, RuntimeModel& model) {
   model.leg_of_body.assign(model.mass.size(), -1);
   for (std::size_t i = 0; i < legs.size(); ++i) {
@@ -245,9 +245,9 @@ void MarkLegs(const RobotTree& tree, const std::vector<Leg>& legs, RuntimeModel&
   }
 }
 
-/// What gives way below the markers of a foot is a part of its leg. Eq. 6 has the load that the
-/// waist puts on the leg, but the sole bears the leg as well: the same factor for all postures and
-/// shares of the weight (ec_leg_load).
+/// Adds the compliance of the sole to that of its leg. The load in eq. 6 is that of the waist on
+/// the leg, but the sole also bears the leg; the same factor holds for all postures and shares of
+/// the weight (ec_leg_load).
 void AddSoles(const StoredCalibration& calibration, RuntimeModel& model) {
   const double total = std::accumulate(model.mass.begin(), model.mass.end(), 0.0);
   for (const SoleSpring& sole : calibration.soles) {
@@ -298,7 +298,7 @@ void AddLimbs(const Project& project, const StoredRobot& robot, bool elastic, Ru
 
 namespace {
 
-/// Whether the model has all parameters of joints that the file has.
+/// Whether the model has all joint parameters in the file.
 bool HasAll(const ErrorModel& model, const StoredCalibration& calibration) {
   std::set<std::string> names;
   for (const Parameter& parameter : model.parameters) names.insert(parameter.name);
@@ -306,7 +306,7 @@ bool HasAll(const ErrorModel& model, const StoredCalibration& calibration) {
                      [&](const auto& error) { return names.contains(error.first); });
 }
 
-/// A marker on each body at the end of the tree that has none, so that every joint moves one.
+/// Adds a marker on each body at the end of the tree that has none, so that every joint moves one.
 std::vector<Marker> WithMarkersAtEnds(const Project& project) {
   std::vector<Marker> markers = project.markers;
   std::set<int> others = {0};
@@ -338,7 +338,8 @@ StoredRobot RestoreRobot(const Project& project, const StoredCalibration& calibr
   }
   StoredRobot robot;
   robot.model = MakeErrorModel(project.tree, project.markers, project.placement, elasticity);
-  // A robot that was calibrated by touches or other instruments has no markers on what they saw.
+  // A robot that was calibrated by touches or other instruments has no markers on the observed
+  // links.
   if (!HasAll(robot.model, calibration)) {
     robot.model =
         MakeErrorModel(project.tree, WithMarkersAtEnds(project), project.placement, elasticity);

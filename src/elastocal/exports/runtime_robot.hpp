@@ -10,25 +10,25 @@
 
 namespace elastocal {
 
-/// What of a calibration a robot model carries.
+/// The part of a calibration that a robot model contains.
 enum class RuntimeContent {
-  kNominal,    ///< nothing: the URDF as it is
-  kGeometry,   ///< the geometry, as a calibrated URDF has it: rigid
+  kNominal,    ///< none: the URDF as it is
+  kGeometry,   ///< the geometry, rigid, as in a calibrated URDF
   kEverything  ///< geometry and elasticity of joints and legs
 };
 
-/// The calibrated robot for a controller (runtime/compensator.hpp). The ends of the limbs are the
-/// tips of the project's chains. Feet are the tips of its legs, in the order of the chains, with
-/// the centres of the project's soles. Throws InputError where the calibration is of another robot
-/// (NominalFingerprint), and where it has parameters that the project's robot does not have.
+/// The calibrated robot for a controller (runtime/compensator.hpp). The ends of limbs are the tips
+/// of the project's chains. Feet are the tips of its legs, in the order of the chains, with the
+/// centres of the project's soles. Throws InputError for a calibration of another robot
+/// (NominalFingerprint), and for parameters that the project's robot does not have.
 RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& calibration,
                               RuntimeContent content = RuntimeContent::kEverything);
 
-/// What a model without tips is worth, in words: no command can be corrected.
+/// Text that a model without tips can correct no command.
 std::string NothingToCorrect();
 
-/// The error model with the joints and legs that a calibration found elastic, for all markers of
-/// the project, and the calibration's errors of joints and legs in its order.
+/// The error model with the joints and legs that a calibration found elastic and all markers of the
+/// project, and the calibration's errors of joints and legs in the order of its parameters.
 struct StoredRobot {
   ErrorModel model;
   Eigen::VectorXd errors;

@@ -14,7 +14,7 @@
 namespace elastocal {
 namespace {
 
-/// The number of the process that wrote it, in words; empty where there is none.
+/// The number of the process in the lock file, as text; empty where there is none.
 std::string HolderOf(int descriptor) {
   std::array<char, 32> text{};
   const ssize_t count = pread(descriptor, text.data(), text.size() - 1, 0);
@@ -28,7 +28,7 @@ std::string HolderOf(int descriptor) {
 BatchLock::BatchLock(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kBatchLockName;
   descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) return;  // what is written to the folder says why
+  if (descriptor_ < 0) return;  // writing results to the folder reports the reason
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     if (errno != EWOULDBLOCK) return;
     const std::string holder = HolderOf(descriptor_);

@@ -5,13 +5,13 @@
 
 namespace elastocal {
 
-/// While it lives, no other process holds a lock on this folder: two batches in one folder would do
-/// tasks twice, and each write over what the other does. The lock ends with the process, however it
-/// ends; the file `.batch.lock` stays.
+/// Lock on the folder of a batch. While the object lives, no other process holds the lock: two
+/// batches in one folder would do tasks twice and overwrite each other's results. The lock ends
+/// with the process, however that ends; the file `.batch.lock` stays.
 class BatchLock {
  public:
-  /// Throws InputError where another process holds it, with its number. Where the file system has
-  /// no locks, nothing is held.
+  /// Takes the lock. Throws InputError, with the process's number, where another process holds it.
+  /// On a file system without locks, nothing is locked.
   explicit BatchLock(const std::filesystem::path& folder);
   ~BatchLock();
   BatchLock(const BatchLock&) = delete;
@@ -21,7 +21,7 @@ class BatchLock {
   int descriptor_ = -1;
 };
 
-/// The name of its file.
+/// Name of the lock file.
 inline constexpr const char* kBatchLockName = ".batch.lock";
 
 }  // namespace elastocal

@@ -13,10 +13,10 @@
 namespace elastocal {
 namespace {
 
-constexpr double kManyTimes = 3.0;  // the median error
+constexpr double kManyTimes = 3.0;  // ratio to the median error
 constexpr std::size_t kFewestRobots = 3;
 
-/// An estimate of one parameter.
+/// One robot's estimate of a parameter.
 struct Value {
   std::size_t member = 0;
   double value = 0.0, sd = 0.0;
@@ -27,7 +27,7 @@ struct Values {
   std::vector<Value> all;
 };
 
-/// By parameter: the estimates that the data tell.
+/// For each parameter: the estimates that the data tell.
 std::map<std::string, Values> CollectValues(const std::vector<FleetMember>& members) {
   std::map<std::string, Values> values;
   for (std::size_t m = 0; m < members.size(); ++m) {
@@ -46,7 +46,7 @@ struct Scatter {
   double mean = 0.0, variance = 0.0;
   int count = 0;
 
-  /// Of those that `with` says.
+  /// Of the values for which `with` is true.
   template <typename Which>
   Scatter(const std::vector<Value>& values, Which with) {
     double uncertainty = 0.0;
@@ -66,7 +66,7 @@ struct Scatter {
   }
 };
 
-/// Keeps those that are significant by Holm at the level, the least likely first.
+/// Keeps the findings that are significant by Holm at the level, the smallest p first.
 template <typename Finding>
 std::vector<Finding> Significant(std::vector<Finding> findings, double level) {
   std::vector<double> p;
@@ -165,7 +165,7 @@ void FindWorkshop(const std::vector<FleetMember>& robots, FleetFamily& family) {
   }
 }
 
-/// "theta" of "joint.theta".
+/// Kind of a parameter: "theta" of "joint.theta".
 std::string KindOf(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
 }  // namespace

@@ -32,7 +32,7 @@ double Millimetres(const Json& json, const char* artefact, const char* key) {
   return of.contains(key) && of[key].is_number() ? 1e-3 * of[key].get<double>() : kUnknown;
 }
 
-/// Root mean square of the 3-D distances of what instruments measure the position of, m.
+/// Root mean square of the 3-D position errors over all instruments that measure positions, m.
 double PositionError(const Json& figures) {
   if (!figures.is_object() || !figures.contains("instruments")) return kUnknown;
   double squares = 0.0, count = 0.0;
@@ -46,7 +46,7 @@ double PositionError(const Json& figures) {
   return count > 0.0 ? std::sqrt(squares / count) : kUnknown;
 }
 
-/// The errors of a session with contact or instruments: on what was held out, if anything was.
+/// Reads the errors of a session with contact or instruments: on held-out data, if there are any.
 void ReadPositionErrors(const Json& contact, SessionOutcome& outcome) {
   const bool held_out = contact.contains("kfold") && contact["kfold"].is_object();
   const Json judged = contact.value(held_out ? "kfold" : "fit", Json());
@@ -83,7 +83,7 @@ SessionOutcome ReadOutcome(const FleetTask& task, const TaskEnd& end, const fs::
   return outcome;
 }
 
-/// Keeps the members of which `key` is what most have; the others are noted as `of_others`.
+/// Keeps the members with the most frequent `key`; the others are noted as `of_others`.
 template <typename Key>
 void KeepMost(Key key, const std::string& of_others, std::vector<FleetMember>& members,
               std::vector<std::string>& notes) {
@@ -103,7 +103,7 @@ void KeepMost(Key key, const std::string& of_others, std::vector<FleetMember>& m
   });
 }
 
-/// One nominal robot, and one frame of the root link: else errors are not of the same quantities.
+/// Keeps one nominal robot and one gauge, because otherwise errors are not the same quantities.
 void KeepOneRobot(std::vector<FleetMember>& members, std::vector<std::string>& notes) {
   KeepMost([](const CalibrationEstimate& estimate) { return estimate.nominal; },
            "of another nominal robot", members, notes);

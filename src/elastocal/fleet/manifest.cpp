@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr int kMostTasks = 1'000'000;
 constexpr std::size_t kLongestName = 100;
 
-/// What all tasks of a manifest have in common.
+/// Settings that all tasks of a manifest share.
 struct Common {
   fs::path folder, output, project;
   std::vector<std::string> calibrate;
@@ -36,7 +36,8 @@ fs::path PathOf(const YamlValue& value, const fs::path& folder) {
   return (folder / value.Text()).lexically_normal();
 }
 
-/// `{kfold: 10, elastic: true}` as `--kfold 10 --elastic`; files are seen from `folder`.
+/// Options of a command line: `{kfold: 10, elastic: true}` as `--kfold 10 --elastic`. Files are
+/// relative to `folder`.
 std::vector<std::string> ReadWords(const std::optional<YamlValue>& options,
                                    const fs::path& folder) {
   const std::set<std::string> files{"prior", "postures", "motion", "settings", "marker-places"};
@@ -68,12 +69,12 @@ std::vector<std::string> CalibrateWords(const FleetTask& task, const fs::path& r
   return words;
 }
 
-/// How the days of sessions are given; not both ways, since their differences count.
+/// Forms in which the days of sessions are given. Only one may occur, because differences count.
 struct DayKinds {
   bool dates = false, numbers = false;
 };
 
-/// Days from any day: a number, or a date, in days from 1970.
+/// Reads a day: a number from any origin, or a date, which becomes days since 1970.
 double ReadDay(const YamlValue& value, DayKinds& kinds) {
   const std::string text = value.Text();
   int year = 0, month = 0, day = 0, length = 0;
@@ -120,7 +121,7 @@ FleetTask ReadSession(const YamlValue& item, const Common& common, DayKinds& day
   return task;
 }
 
-/// All robots of a study with each of its settings.
+/// Adds the tasks of a study: all its robots with each of its settings.
 void ReadStudy(const YamlValue& item, const Common& common, std::vector<FleetTask>& tasks) {
   item.ExpectKeys({"name", "robots", "first", "batch", "project", "simulate", "calibrate",
                    "settings", "keep_recordings"});

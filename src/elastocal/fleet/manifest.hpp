@@ -8,24 +8,25 @@
 
 namespace elastocal {
 
-/// One session of one robot: commands of the program, run one after the other, and the folder for
-/// their results.
+/// One session of one robot: commands of the program that are run one after the other, and the
+/// folder for their results.
 struct FleetTask {
-  std::string name;                ///< of its folder; [A-Za-z0-9_.-]+
-  std::string robot;               ///< sessions of one robot have the same
-  std::string batch;               ///< of its maker; may be empty
-  std::optional<double> day = {};  ///< when it was recorded, days; for drift
+  std::string name;                ///< name of its folder; [A-Za-z0-9_.-]+
+  std::string robot;               ///< the same for all sessions of a robot
+  std::string batch;               ///< maker's batch; may be empty
+  std::optional<double> day = {};  ///< time of the recording, days; for drift
   std::filesystem::path project;
-  std::vector<std::filesystem::path> recordings;  ///< none: the robot is virtual
+  std::vector<std::filesystem::path> recordings;  ///< empty: the robot is virtual
   std::vector<std::vector<std::string>> commands;
-  /// What the commands leave that is not kept.
+  /// Files that the commands leave and that are not kept.
   std::vector<std::filesystem::path> leftovers;
 };
 
-/// Reads a manifest (docs/formats.md, Fleets): sessions that were recorded, and studies of virtual
-/// robots (design x seed x setting). `output`: the folder for all results, a folder a task in it.
-/// Relative paths are seen from the manifest's folder. Throws InputError naming file, line and key:
-/// malformed YAML, unknown key, two tasks of one name, a session without recording, nothing to do.
+/// Reads a manifest (docs/formats.md, Fleets): recorded sessions, and studies of virtual robots
+/// (design x seed x setting). `output` is the folder for all results, with a folder for each task.
+/// Relative paths start in the manifest's folder. Throws InputError that names file, line and key
+/// for malformed YAML, an unknown key, two tasks with one name, a session without recording, and an
+/// empty list of tasks.
 std::vector<FleetTask> ReadManifest(const std::filesystem::path& file,
                                     const std::filesystem::path& output);
 

@@ -27,7 +27,7 @@ double Now() {
 
 bool IsResult(int exit_code) { return exit_code == 0 || exit_code == 4; }
 
-/// The latest change of a file, or of any file in a folder.
+/// Time of the latest change of a file, or of any file in a folder.
 std::optional<fs::file_time_type> LatestChange(const fs::path& path) {
   std::error_code error;
   auto latest = fs::last_write_time(path, error);

@@ -9,12 +9,12 @@
 
 namespace elastocal {
 
-/// A slot of this machine: each command of a task is a process of its own, so that a task has the
-/// bits of the same commands given by hand, and a crash loses one task. What they print goes to
-/// OUTPUT/TASK.log.
+/// A slot on this machine. Each command of a task is a process of its own, so that results are
+/// bit-identical to those of the same commands given by hand, and a crash loses only one task.
+/// Output goes to OUTPUT/TASK.log.
 class TaskProcess : public TaskSlot {
  public:
-  /// `program`: the file of elastocal. Keeps a reference to the tasks.
+  /// `program` is the path of elastocal. Keeps a reference to the tasks.
   TaskProcess(std::filesystem::path program, std::filesystem::path output,
               const std::vector<FleetTask>& tasks);
   ~TaskProcess() override;
@@ -36,11 +36,11 @@ class TaskProcess : public TaskSlot {
   double begin_ = 0.0;
 };
 
-/// Where a task says how it ended; written last.
+/// The file that records how a task ended; it is written last.
 std::filesystem::path MarkOf(const FleetTask& task, const std::filesystem::path& output);
 
-/// How a task ended in an earlier run, if it is to be taken as done: by the same commands, with a
-/// result (exit code 0 or 4), and none of its project and recordings is newer.
+/// The end of a task in an earlier run, if it counts as done: the commands were the same, there is
+/// a result (exit code 0 or 4), and none of its project and recordings is newer.
 std::optional<TaskEnd> EndedBefore(const FleetTask& task, const std::filesystem::path& output);
 
 }  // namespace elastocal

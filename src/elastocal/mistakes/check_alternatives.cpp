@@ -17,19 +17,19 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastScale = 2e-4;  // cameras are hardly calibrated better
-constexpr int kTurns = 4;             // by which a size is found ...
-constexpr int kMostTurns = 10;        // ... from far off, as what a refit takes up lets it begin
-constexpr double kMostSteps = 10.0;   // of a turn
+constexpr int kTurns = 4;             // rounds in which a size is found ...
+constexpr int kMostTurns = 10;        // ... from far off, where a refit absorbs a part of it
+constexpr double kMostSteps = 10.0;   // of a round
 
-/// What a recording leaves of the joints as calibrated, m^2.
+/// Sum of squared distances of a recording from the robot as calibrated, m^2.
 double SquaresOf(const CheckedCalibration& calibration, const Recording& recording) {
   return std::pow(calibration.refit(recording).metrics_all.rmse_3d, 2);
 }
 
-/// The size at which least is left, by parabolas from `start`.
+/// The size with the smallest squares, by parabolas from `start`.
 double LeastSquares(const std::function<double(double)>& squares, double start) {
   double size = start, step = 0.1 * std::abs(start);
-  int near = 0;  // turns that reached what they aimed at
+  int near = 0;  // number of rounds that reached their aim
   for (int turn = 0; turn < kMostTurns && near < kTurns; ++turn) {
     const double here = squares(size), below = squares(size - step), above = squares(size + step);
     const double curvature = below + above - 2.0 * here;
@@ -44,8 +44,8 @@ double LeastSquares(const std::function<double(double)>& squares, double start) 
   return size;
 }
 
-/// The scale of the cameras. That of the predicted markers is where its search begins: the refit of
-/// root and markers has taken a part of it.
+/// Finds the scale of the cameras. The search begins at the scale of the predicted markers, because
+/// the refit of root and markers has absorbed a part of the true one.
 double CameraScale(const CheckedCalibration& calibration, const Recording& recording,
                    const CalibrationOptions& options) {
   const CalibrationResult result = calibration.refit(recording).result;
@@ -59,8 +59,8 @@ double CameraScale(const CheckedCalibration& calibration, const Recording& recor
   return 1.0 + LeastSquares(squares, start - 1.0);
 }
 
-/// The gain of a joint that explains most of what the joints as calibrated leave; its size to first
-/// order is where the search for it begins.
+/// Finds the gain of a joint that explains most of the residuals of the robot as calibrated. The
+/// search begins at its size to first order.
 std::optional<RecordingFault> WrongGain(const CheckedCalibration& calibration,
                                         const Recording& recording,
                                         const CalibrationOptions& options) {
@@ -94,7 +94,7 @@ double ScaleOfMarkers(const Recording& recording, const Eigen::MatrixXd& predict
   const bool one_pose = !HasPoseByPosture(recording);
   double along = 0.0, squares = 0.0;
   std::vector<Eigen::Vector3d> at, off;
-  const auto add = [&] {  // the markers that one pose places
+  const auto add = [&] {  // adds the markers that one pose places
     Eigen::Vector3d centre = Eigen::Vector3d::Zero(), mean_off = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < at.size(); ++k) {
       centre += at[k] / static_cast<double>(at.size());

@@ -11,22 +11,24 @@
 
 namespace elastocal {
 
-/// By which factor measured markers seem larger than predicted ones (postures x 3 N_M, m; NaN where
-/// unknown): that of the similarity that brings these nearest to them, the predictions being placed
-/// already, one pose for all postures or one for each (HasPoseByPosture). 1 without markers.
+/// Factor by which measured markers appear larger than predicted ones (postures x 3 N_M, m; NaN
+/// where unknown): the scale of the similarity transform that brings the predictions nearest to
+/// them. The predictions are already placed, with one pose for all postures or one for each
+/// (HasPoseByPosture). 1 without markers.
 double ScaleOfMarkers(const Recording& recording, const Eigen::MatrixXd& predicted);
 
-/// What is asked of a calibration that a few postures test.
+/// Operations on the calibration that a few postures test.
 struct CheckedCalibration {
-  /// Waist and markers refitted, the joints as calibrated.
+  /// Fits waist and markers, with the joints as calibrated.
   std::function<Refit(const Recording&)> refit;
-  /// Whether it explains a recording without a joint that has moved.
+  /// Whether the calibration explains a recording without a joint that has moved.
   std::function<bool(const Measurements&)> holds;
 };
 
-/// A wrong scale of the cameras, and a wrong gain of one joint's positions, each if the calibration
-/// holds once it is corrected: moved joints may look like these. In words, with what corrects
-/// them. `recording`: with the markers of the refit's model, which those of `as_recorded` become.
+/// Finds a wrong scale of the cameras, and a wrong gain of one joint's positions, with which
+/// corrected the calibration holds: moved joints may look like these. Returns sentences that name
+/// the correction. `recording` has the markers of the refit's model, to which those of
+/// `as_recorded` are converted.
 std::vector<std::string> FindAlternatives(const CheckedCalibration& calibration,
                                           const Recording& recording,
                                           const Measurements& as_recorded, const Project& project);

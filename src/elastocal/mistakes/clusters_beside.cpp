@@ -25,7 +25,7 @@ std::vector<LabelCluster> ClustersBeside(const std::vector<int>& coordinates,
   const std::vector<Joint>& joints = model.tree.joints;
   std::set<int> marked;
   for (const LabelCluster& cluster : clusters) marked.merge(BodiesOf(cluster, model));
-  std::vector<int> ways;  // bodies to go on from
+  std::vector<int> ways;  // bodies from which to go on
   std::set<int> reached;
   const auto reach = [&](int body) {
     if (reached.insert(body).second && !marked.contains(body)) ways.push_back(body);

@@ -8,9 +8,9 @@
 
 namespace elastocal {
 
-/// The clusters, of those given, that no other of them separates from a joint which one of the
-/// coordinates moves. If such a joint seems to be elsewhere, a cluster further away is not what is:
-/// the nearer ones would not seem displaced. Markers are those of the model.
+/// Those of the clusters that no other one separates from a joint which one of the coordinates
+/// moves. If such a joint appears displaced, the true cause cannot be a cluster further away,
+/// because the nearer ones would not appear displaced. Markers are those of the model.
 std::vector<LabelCluster> ClustersBeside(const std::vector<int>& coordinates,
                                          const std::vector<LabelCluster>& clusters,
                                          const ErrorModel& model);

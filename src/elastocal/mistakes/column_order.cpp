@@ -23,21 +23,22 @@
 namespace elastocal {
 namespace {
 
-constexpr double kFarFromNominal = 0.05;  // m: markers, beyond what errors of a robot do
-constexpr double kFarShare = 0.025;       // of the size of a small robot
-constexpr double kOffItsColumn = 0.06;    // rad: a joint from its column, beyond errors of a robot
-constexpr double kLeftInOrder = 0.5;      // of what joints are off by
-constexpr double kMovesOtherwise = 0.1;   // rad: range of a joint that moves
-constexpr int kMostRounds = 4;            // of positions by markers and columns by positions
-constexpr int kFewestInOrder = 4;         // postures of a trial
+constexpr double kFarFromNominal = 0.05;  // m: distance of markers beyond the errors of a robot
+constexpr double kFarShare = 0.025;       // share of the size of a small robot
+// rad: deviation of a joint from its column beyond the errors of a robot
+constexpr double kOffItsColumn = 0.06;
+constexpr double kLeftInOrder = 0.5;     // share of the joints' deviation
+constexpr double kMovesOtherwise = 0.1;  // rad: range of a joint that moves
+constexpr int kMostRounds = 4;           // rounds of positions by markers and columns by positions
+constexpr int kFewestInOrder = 4;        // postures of a trial
 constexpr std::size_t kOfExchange = 2;
 constexpr std::size_t kFewestToPlace = 4;  // markers
 
-/// Median of the sizes.
+/// Median of the absolute values.
 double UsualSize(const Eigen::VectorXd& values) { return Median(values.cwiseAbs()); }
 
-/// Of the marker that is furthest from the nominal robot, placed in each posture where it fits
-/// best: the median distance, m.
+/// Median distance, m, of the marker that is furthest from the nominal robot, which is placed best
+/// in each posture.
 double FurthestMarker(const ErrorModel& model, const Geometry& geometry, const Recording& recording,
                       const std::vector<int>& postures) {
   std::vector<std::vector<double>> distances(Size(model.marker_count()));
@@ -66,7 +67,7 @@ double FurthestMarker(const ErrorModel& model, const Geometry& geometry, const R
   return furthest;
 }
 
-/// One trial, in which columns may be in another order.
+/// Search in one trial for columns in another order.
 class OrderSearch {
  public:
   OrderSearch(const ErrorModel& model, Recording trial)
@@ -79,7 +80,7 @@ class OrderSearch {
     }
   }
 
-  /// By coordinate: the column that holds its positions; empty where they are in order.
+  /// For each coordinate: the column with its positions; empty where the columns are in order.
   std::vector<int> Run() {
     order_.resize(Size(given_.cols()));
     std::iota(order_.begin(), order_.end(), 0);
@@ -100,7 +101,7 @@ class OrderSearch {
     return order_;
   }
 
-  /// Coordinates whose column is a copy of another one's, with the other.
+  /// Coordinates whose column is a copy of another one's, with that other one.
   std::vector<std::pair<int, int>> Copies() {
     std::vector<std::pair<int, int>> equal, copies;
     for (const int a : coordinates_) {
@@ -113,7 +114,7 @@ class OrderSearch {
     shown_ = PositionsByMarkers(model_, trial_);
     std::sort(equal.begin(), equal.end());
     for (const auto& [copy, original] : equal) {
-      if (!copies.empty() && copies.back().first == copy) continue;  // of one original
+      if (!copies.empty() && copies.back().first == copy) continue;  // copies of the same original
       const double off = VaryingOff(copy);
       if (off > kOffItsColumn && VaryingOff(original) < kLeftInOrder * off) {
         copies.emplace_back(copy, original);
@@ -129,13 +130,13 @@ class OrderSearch {
     return values.maxCoeff() - values.minCoeff();
   }
 
-  /// A constant is an error of the robot.
+  /// Deviation without its constant part, which is an error of the robot.
   double VaryingOff(int c) const {
     const Eigen::VectorXd off = shown_.col(c) - given_.col(c);
     return UsualSize(off.array() - Median(off));
   }
 
-  /// Root of the sum of squares, of what the markers show: their positions are not as logged.
+  /// Root of the sum of squared deviations of the positions by the markers from the log.
   double Off(const Eigen::MatrixXd& q) const {
     double squares = 0.0;
     for (const int c : coordinates_) squares += std::pow(UsualSize(shown_.col(c) - q.col(c)), 2);
@@ -150,7 +151,7 @@ class OrderSearch {
     return UsualSize(shown_.col(joint) - given_.col(column));
   }
 
-  /// By coordinate its column, -1: none yet.
+  /// Column of each coordinate; -1: none yet.
   struct Columns {
     std::vector<int> of;
     std::vector<char> taken;
@@ -161,7 +162,8 @@ class OrderSearch {
     }
   };
 
-  /// Joints that are where their columns have them keep these; of the others, the nearest first.
+  /// Assigns columns: joints that agree with their columns keep them; the others get the nearest
+  /// first.
   std::vector<int> Assigned() const {
     Columns columns{std::vector<int>(order_.size(), -1), std::vector<char>(order_.size(), 0)};
     std::vector<int> open, hidden;
@@ -178,7 +180,7 @@ class OrderSearch {
     return GiveNearest(open, columns) && GiveLeft(hidden, columns) ? columns.of : order_;
   }
 
-  /// Whether there is a column for each of these joints, which markers show.
+  /// Whether each of these joints, which markers show, finds a column.
   bool GiveNearest(std::vector<int> joints, Columns& columns) const {
     struct Distance {
       double off;
@@ -202,8 +204,8 @@ class OrderSearch {
     return joints.empty();
   }
 
-  /// What no marker shows keeps its column or, if another joint has taken it, gets that one's.
-  /// Whether there is one for each.
+  /// Joints that no marker shows keep their columns; if another joint has taken it, they get that
+  /// joint's. Returns whether each finds one.
   bool GiveLeft(const std::vector<int>& joints, Columns& columns) const {
     for (const int c : joints) {
       if (columns.taken[Size(c)] == 0) columns.Give(c, c);
@@ -224,7 +226,7 @@ class OrderSearch {
   const ErrorModel& model_;
   Recording trial_;
   Eigen::MatrixXd given_;
-  std::vector<int> coordinates_;  ///< of joints that turn, each with a column of its own
+  std::vector<int> coordinates_;  ///< coordinates of revolute joints with their own columns
   std::vector<int> order_;
   Eigen::MatrixXd shown_;
 };
@@ -255,11 +257,11 @@ std::vector<TriedCorrection> FindColumnOrders(const ErrorModel& nominal,
   Geometry geometry = ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
   PlaceWaist(Transform::Identity(), Vector6d::Zero(), geometry);
   const double far = std::min(kFarFromNominal, kFarShare * RobotSize(tree));
-  std::map<std::vector<int>, std::vector<int>> trials_of;  // by order
+  std::map<std::vector<int>, std::vector<int>> trials_of;  // trials by order
   std::vector<TriedCorrection> found;
   const auto name_of = [&](int c) { return JointOfCoordinate(tree, c).name; };
   struct Copied {
-    Recording told;  ///< the copy where the markers show it
+    Recording told;  ///< the recording with the copy as the markers show it
     std::vector<int> trials;
   };
   std::map<std::pair<int, int>, Copied> copied;  // by copy and original

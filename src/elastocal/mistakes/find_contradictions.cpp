@@ -25,12 +25,14 @@ namespace elastocal {
 namespace {
 
 constexpr double kContradicted = 10.0;
-constexpr double kLeftByMistake = 0.3;  // of the error on held-out trials
-constexpr int kUpdatesTogether = 15;  // of the noise, of trials that seem to contradict each other
-constexpr int kAtTheSeam = 2;         // postures
-constexpr int kFilterSpreads = 2;     // postures beside exchanged ones, which the filter mixes
+constexpr double kLeftByMistake = 0.3;  // share of the error on held-out trials
+// Updates of the noise for trials that seem to contradict each other.
+constexpr int kUpdatesTogether = 15;
+constexpr int kAtTheSeam = 2;      // postures
+constexpr int kFilterSpreads = 2;  // postures beside exchanged ones, which the filter mixes
 
-/// Without the markers that knocks added (SplitMarkers), which the project does not know.
+/// The recording without the markers that knocks added (SplitMarkers), which the project does not
+/// have.
 Recording AsRecorded(const Recording& recording, const std::vector<Knock>& knocks) {
   Recording own = recording;
   for (const Knock& knock : knocks) {
@@ -40,14 +42,15 @@ Recording AsRecorded(const Recording& recording, const std::vector<Knock>& knock
   return own;
 }
 
-/// Of the largest model, m; infinite where nothing is judged.
+/// Mean error of the largest model, m; infinite where nothing is judged.
 double MeanError(const ModelComparison& comparison, const ErrorTable& table) {
   const auto found = table.mean_rmse_3d.find(comparison.largest_kind());
   return found == table.mean_rmse_3d.end() ? std::numeric_limits<double>::infinity()
                                            : found->second;
 }
 
-/// A mistake in the log or labels of held-out trials that the calibrated robot proves; else empty.
+/// Finds a mistake in the log or labels of held-out trials that the calibrated robot proves; else
+/// empty.
 std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
                              const std::vector<Knock>& knocks, const ModelComparison& comparison,
                              const ErrorTable& table) {
@@ -76,7 +79,7 @@ std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
       names.empty() ? "" : " (--accept" + names + " corrects it)");
 }
 
-/// Whether the estimate has each of two markers where the project has the other.
+/// Whether each of two markers is estimated where the project has the other.
 bool AreExchanged(const CalibrationResult& result, int a, int b) {
   const auto from = [&](int m, int other) {
     return (EstimatedPlace(result, m) - result.model.markers[Size(other)].p_link_marker)
@@ -91,14 +94,16 @@ std::string TrialsThatSee(const Recording& recording, int a, int b) {
                     }));
 }
 
-/// Two markers of one cluster that have each other's labels in all trials of the estimate that see
+/// Two markers of one cluster whose labels are exchanged in all trials of the estimate that show
 /// them, or in held-out postures.
 struct Exchange {
   int a = -1, b = -1;
-  std::vector<int> postures;  ///< held-out ones that are nearer to the model with it undone
-  double before = 0.0;        ///< rms of all held-out distances, m
-  double after = 0.0;         ///< with it undone
-  bool of_estimate = false;   ///< the labels are wrong there, not in the held-out postures
+  /// held-out postures that are nearer to the model with the labels exchanged back
+  std::vector<int> postures;
+  double before = 0.0;  ///< rms over all held-out distances, m
+  double after = 0.0;   ///< the same with the labels exchanged back
+  /// The labels are wrong in the estimate's trials, not in the held-out postures.
+  bool of_estimate = false;
 
   std::string Description(const Recording& recording, const Recording& held_out) const {
     return fmt::format(
@@ -112,8 +117,8 @@ struct Exchange {
   }
 };
 
-/// Each side fits by itself, and where the distances to the cluster's others are much alike, only
-/// the robot tells.
+/// Finds such an exchange. Each side fits by itself, and where the distances to the cluster's other
+/// markers are similar, only the robot shows it.
 std::optional<Exchange> ExchangeWithinCluster(const Project& project, const Recording& recording,
                                               const Recording& held_out,
                                               const ModelComparison& comparison) {
@@ -155,8 +160,8 @@ std::optional<Exchange> ExchangeWithinCluster(const Project& project, const Reco
   return found;
 }
 
-/// A joint that is off in all held-out trials may as well be off in those of the estimate; else
-/// empty.
+/// If a joint is off in all held-out trials, adds that it may instead be off in those of the
+/// estimate; else empty.
 std::string OrInThoseOfTheEstimate(const RecordingFault& fault, const Recording& all,
                                    const Recording& estimated) {
   const bool to_the_end = fault.trial < 0 || fault.trial + 1 == std::ssize(all.trials);
@@ -172,7 +177,7 @@ std::string OrInThoseOfTheEstimate(const RecordingFault& fault, const Recording&
                              ", which the recording does not tell: measure it there again";
 }
 
-/// Without what the estimate left out.
+/// The recording without the observations that the estimate left out.
 Recording AsUsed(const Recording& recording, const CalibrationResult& result) {
   Recording used = recording;
   for (int i = 0; i < recording.posture_count(); ++i) {
@@ -183,9 +188,9 @@ Recording AsUsed(const Recording& recording, const CalibrationResult& result) {
   return used;
 }
 
-/// A cluster that was knocked between trials or within one, as all of them together tell, the
-/// held-out ones last; empty: none. The trials of the estimate need not: where each shows other
-/// limbs, a waist that was knocked between them moves all that they show.
+/// Finds a cluster that was knocked between trials or within one, by all trials together, the
+/// held-out ones last; empty: none. The trials of the estimate alone need not show it: if each
+/// shows other limbs, a waist that was knocked between them displaces everything that they show.
 std::string KnockOfAll(const Project& project, const RecordedModel& robot, const Recording& all) {
   const std::vector<Knock> knocks =
       FindKnocks(robot.model, all, robot.base, SeenClusters(project, all), project.calibration);
@@ -205,7 +210,7 @@ ErrorTable FittedTable(const Project& project, const Recording& recording,
       .table;
 }
 
-/// Whether held-out trials are suspiciously worse than those of the estimate, and by how much.
+/// How much worse held-out trials are predicted than those of the estimate are fitted.
 Contrast ContrastOf(const Project& project, const Recording& recording,
                     const ModelComparison& comparison, const ErrorTable& fitted,
                     const ErrorTable& held_out_table) {
@@ -223,7 +228,7 @@ std::string LeaveOutBriefExchange(const Project& project, const Recording& recor
   const std::optional<Exchange> found =
       ExchangeWithinCluster(project, recording, held_out, comparison);
   if (!found || found->of_estimate) return "";
-  // Half of what the trials that it is in show of the two: a tracker that lost them for a while.
+  // Half of the observations of the two in these trials: a tracker lost them for a while.
   int seen = 0;
   for (int i = 0; i < held_out.posture_count(); ++i) {
     const bool in_trial =
@@ -266,13 +271,13 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   }
   const Recording thinned = WithThinnedMotions(held_out, recording.posture_count());
   Recording all = JoinTrials(recording, thinned);
-  // Trials that contradict each other keep noise and outliers from coming to rest.
+  // Noise and outliers of contradictory trials hardly come to rest.
   CalibrationOptions roughly = project.calibration;
   roughly.outliers = OutlierPolicy::kKeep;
   roughly.max_iterations = std::min(roughly.max_iterations, kUpdatesTogether);
   const CalibrationResult together =
       Calibrate(robot.model, all, robot.base, comparison.largest().kind, roughly);
-  // Within each trial they tell how fast joints moved.
+  // Times within each trial are kept, because joints' speeds follow from them.
   all.time_s.resize(recording.time_s.size() + thinned.time_s.size());
   all.time_s << recording.time_s, thinned.time_s;
   if (all.time_s.size() != all.posture_count()) all.time_s.resize(0);

@@ -31,15 +31,17 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeftByOdd = 0.5;        // of the error of a fit, without them
-constexpr double kLeftBesideGears = 0.8;  // of the error of a fit with wrong gains as gears
+constexpr double kLeftByOdd = 0.5;  // share of the error of a fit, without them
+// Share of the error of a fit that treats wrong gains as gears.
+constexpr double kLeftBesideGears = 0.8;
 
 struct FoundFault : GeneralFault {
-  bool of_one_trial = false;  ///< FindTrialOffset: which trial is wrong, others do not tell
+  /// From FindTrialOffset: other trials do not tell which trial is wrong.
+  bool of_one_trial = false;
 };
 
-/// What looks like knocks of several clusters may be a fault that moves them all, so it is looked
-/// for without the knocks, too.
+/// Several apparent knocks may be one fault that displaces all these clusters, which is therefore
+/// also searched for without the knocks.
 std::optional<FoundFault> FindGeneralFault(const Project& project,
                                            std::optional<std::uint64_t> seed,
                                            Measurements as_recorded, const RecordedModel& robot,
@@ -78,12 +80,12 @@ std::optional<FoundFault> FindGeneralFault(const Project& project,
 }
 
 bool IsFarOff(const std::vector<RecordingFault>& gears) {
-  constexpr double kFarOffGear = 0.1;  // beyond it, a linear estimate is none
+  constexpr double kFarOffGear = 0.1;  // beyond this, a linear estimate is invalid
   return std::any_of(gears.begin(), gears.end(),
                      [](const RecordingFault& gear) { return std::abs(gear.size) > kFarOffGear; });
 }
 
-/// The general fault of a robot without the causes that it seemed to have.
+/// Finds the fault of a robot without the causes that it seemed to have.
 std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
                                             const Measurements& as_recorded, ModelKind kind) {
   project.elasticity.extra.clear();
@@ -94,7 +96,8 @@ std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::
   return FindGeneralFault(project, seed, as_recorded, robot, plain.calibration, fit);
 }
 
-/// What undoes a wrong scale: `scale=1.00200` in all trials, else `scale:TRIAL=1.00200` in each.
+/// Names that correct a wrong scale: `scale=1.00200` for all trials, else `scale:TRIAL=1.00200` for
+/// each.
 std::string ScaleCorrections(const std::vector<const TrialSummary*>& wrong, bool all) {
   constexpr double kAlike = 5e-4;
   double least = wrong.front()->scale->size, most = least, sum = 0.0;
@@ -109,7 +112,7 @@ std::string ScaleCorrections(const std::vector<const TrialSummary*>& wrong, bool
   return fmt::format(" scale={:.5f}", 1.0 + sum / static_cast<double>(wrong.size()));
 }
 
-/// The trials whose scale the reference lengths contradict, in a sentence; empty without any.
+/// A sentence about the trials whose scale the reference lengths contradict; empty without any.
 std::string DescribeWrongScales(const std::vector<TrialSummary>& trials) {
   std::vector<const TrialSummary*> wrong;
   bool all = true;
@@ -131,8 +134,8 @@ std::string DescribeWrongScales(const std::vector<TrialSummary>& trials) {
       ScaleCorrections(wrong, all));
 }
 
-/// Mistakes in a few rows of a table which are too small beside what the nominal robot errs by,
-/// each with what corrects none of them: proved by a fit without them.
+/// Finds mistakes in a few rows of a table that are small compared with errors of the nominal
+/// robot; each is proved by a fit without these rows, which does not correct them.
 std::vector<std::string> OddBesideCalibrated(const Project& project, const RecordedModel& robot,
                                              const Recording& recording,
                                              const CalibrationResult& result, double left) {
@@ -152,18 +155,19 @@ std::vector<std::string> OddBesideCalibrated(const Project& project, const Recor
   return said;
 }
 
-/// Whether a fault is of one trial, or begins with one: trials of another robot look so.
+/// Whether a fault is that of one trial, or begins with one: trials of another robot look so.
 bool IsOfTrials(const RecordingFault& fault, const Recording& recording) {
   constexpr int kBeside = 2;  // postures
   if (recording.trials.empty()) return false;
   if (fault.trial >= 0) return true;
-  if (fault.posture <= kBeside) return false;  // it is of all
+  if (fault.posture <= kBeside) return false;  // then the fault is in all postures
   const int last = recording.posture_count() - 1;
   return recording.trial[Size(std::min(last, fault.posture - kBeside))] !=
          recording.trial[Size(std::min(last, fault.posture + kBeside))];
 }
 
-/// The steps of FindFaults, the plainest faults first: what one leaves looks like the next.
+/// The steps of FindFaults, the plainest faults first, because the consequences of one look like
+/// the next.
 class FaultsInTurn {
  public:
   FaultsInTurn(const Project& project, std::optional<std::uint64_t> seed,
@@ -177,7 +181,7 @@ class FaultsInTurn {
         comparison_(comparison),
         gears_(FindImpossibleGears(comparison.largest())),
         of_slides_(ScaleOfSlides(gears_, comparison.largest(), project.calibration)),
-        // Where the cameras are right, a robot whose lengths are all off is of another size.
+        // With a correct scale, a robot whose lengths are all off has another size.
         scale_is_known_(ScaleIsKnown(as_recorded.trials)) {}
 
   std::vector<std::string> Run() {
@@ -216,11 +220,13 @@ class FaultsInTurn {
     return FindGeneralFault(project_, seed_, as_recorded_, robot_, recording_, fit());
   }
 
-  /// The direction of gravity, the scale of the cameras, mistakes, and clusters on other links.
+  /// Examines the direction of gravity, the scale of the cameras, mistakes, and clusters on other
+  /// links.
   std::vector<std::string> OfWholeRecording() const {
     std::vector<std::string> faults;
     if (const auto up = FindWrongUp(robot_.model, recording_)) faults.push_back(Describe(*up));
-    const Recording& measured = as_recorded_.calibration;  // with sensors that contradict statics
+    // With the sensors that contradict statics.
+    const Recording& measured = as_recorded_.calibration;
     if (const auto up = FindUpByTorques(NominalModel(project_, measured), measured,
                                         project_.calibration.slip)) {
       faults.push_back(Describe(*up));
@@ -238,7 +244,7 @@ class FaultsInTurn {
     }
     if (!wrong_scales.empty() || scale_is_known_) return faults;
     if (const auto scale = FindWrongScale(fit(), project_.calibration)) {
-      // The scale of one trial, or axis, is spread over the lengths that it tells.
+      // The scale of one trial, or along one axis, is distributed over the lengths that it affects.
       const auto found = General();
       const bool of_cameras =
           found && (found->fault.kind == FaultKind::kCameraScale || IsInCameraSpace(found->fault));
@@ -249,18 +255,18 @@ class FaultsInTurn {
     return faults;
   }
 
-  /// Faults of joints and others that move several clusters; looked for once.
+  /// Finds faults of joints and others that displace several clusters; the search is made once.
   void Look() {
     if (few_) return;
-    // Causes take up a part of what a fault of a joint does.
+    // Causes absorb a part of a joint's fault.
     found_ =
         gears_.empty() ? General() : FindWithoutCauses(project_, seed_, as_recorded_, fit().kind);
     few_ = found_ ? ExplainFault(*found_, project_) : FaultsInWords();
   }
 
-  /// What looks like another robot may be one joint that is off in the trial in which it stands: it
-  /// displaces all that the trial shows. Whether such a joint explains as much as robots of their
-  /// own do, which leave this error, m.
+  /// Whether one joint with an offset in one trial explains as much as separate robots do, whose
+  /// error is `apart`, m. Such a joint displaces everything that the trial shows, and so looks like
+  /// another robot.
   bool IsOneJoint(double apart) {
     const auto offset = FindTrialOffset(fit(), robot_.base, recording_, project_.calibration,
                                         as_recorded_.validation, OffsetTrials::kAny);
@@ -275,8 +281,8 @@ class FaultsInTurn {
     return true;
   }
 
-  /// A joint that is off in one trial explains much of a trial of another robot, too: there, robots
-  /// of their own leave far less than that.
+  /// Finds recordings of different robots. A joint with an offset in one trial also explains much
+  /// of a trial of another robot, but there separate robots leave far less.
   std::string OfRecordingsApart() {
     const bool of_trials = std::ranges::any_of(
         few_->faults, [&](const RecordingFault& fault) { return IsOfTrials(fault, recording_); });
@@ -288,7 +294,7 @@ class FaultsInTurn {
     return apart->said;
   }
 
-  /// Faults of joints load them as another direction of gravity might.
+  /// Finds a wrong direction of gravity. Faults of joints look similar, and are examined first.
   std::vector<std::string> OfUpByLoads() {
     const auto up = FindUpByLoads(project_, seed_, as_recorded_, left_);
     if (!up) return {};

@@ -11,13 +11,13 @@
 
 namespace elastocal {
 
-/// Whether reference lengths say of every trial that its scale is right.
+/// Whether reference lengths confirm the scale of every trial.
 bool ScaleIsKnown(const std::vector<TrialSummary>& trials);
 
-/// What is wrong with a recording as a whole, in words: a wrong axis up, mistakes that a second fit
-/// proves (FindRecordingMistakes) and, where there are none of these, the fault that explains most
-/// of what the fit leaves (FindRecordingFaults). `as_recorded`: before markers were split at
-/// knocks; `recording`: what was fitted.
+/// Finds faults of a recording as a whole, as sentences: a wrong up axis, mistakes that a second
+/// fit proves (FindRecordingMistakes) and, where there are none of these, the fault that explains
+/// most of the residuals (FindRecordingFaults). `as_recorded` is the recording before markers were
+/// split at knocks, `recording` the fitted one.
 std::vector<std::string> FindFaults(const Project& project, std::optional<std::uint64_t> seed,
                                     const Measurements& as_recorded, const RecordedModel& robot,
                                     const Recording& recording, const ModelComparison& comparison);

@@ -28,18 +28,20 @@ namespace {
 
 constexpr std::size_t kMostTogether = 4;
 constexpr int kMostFits = 8;
-constexpr int kSweeps = 2;            // in which each size is estimated beside the others
-constexpr double kLargestStep = 0.3;  // of a gain at once: further off, a derivative says little
-// No robot whose errors are estimated leaves more, m and as a share of its size.
+constexpr int kSweeps = 2;  // rounds in which each size is estimated beside the others
+// Largest change of a gain in one step, beyond which a derivative tells little.
+constexpr double kLargestStep = 0.3;
+// The largest error that estimated errors of a robot leave, m and as a share of its size.
 constexpr double kMostLeftByFaults = 0.02, kMostLeftOfSize = 0.008;
 constexpr double kFewestSds = 6.0;      // of a fault beside the others
 constexpr int kSamePlace = 2;           // postures
-constexpr std::size_t kFewHomed = 2;    // of other robots, more joints differ
-constexpr std::size_t kSeveral = 2;     // joints that begin to be off at the same place
-constexpr double kClearlyBetter = 0.8;  // times the error that one joint leaves
-constexpr double kAsWell = 1.1;         // times the error that joints leave
+constexpr std::size_t kFewHomed = 2;    // more joints than this differ in another robot
+constexpr std::size_t kSeveral = 2;     // number of joints that begin to be off at the same place
+constexpr double kClearlyBetter = 0.8;  // ratio to the error that one joint leaves
+constexpr double kAsWell = 1.1;         // ratio to the error that joints leave
 
-/// "; if its scale is right, look at ..." where other joints follow the one of a gain; else empty.
+/// Text "; if its scale is right, look at ..." where other joints follow the joint of a gain; else
+/// empty.
 std::string Followers(const RecordingFault& fault, const RobotTree& tree) {
   const bool joint = fault.coordinate >= 0 && fault.linkage < 0;
   if (fault.kind != FaultKind::kJointGain || !joint || fault.trial >= 0) return "";
@@ -54,7 +56,7 @@ std::string Followers(const RecordingFault& fault, const RobotTree& tree) {
                              " follow it (couplings of the project, mimic of the URDF)";
 }
 
-/// Undoes a chosen fault, fits, and looks again.
+/// Corrects the chosen fault, fits, and searches again.
 class FaultExplanation {
  public:
   FaultExplanation(const GeneralFault& general, const Project& project)
@@ -136,7 +138,7 @@ class FaultExplanation {
     faults_.push_back(found);
   }
 
-  /// What is found in a recording. Of motors of rods, only the first one is known how to be undone.
+  /// Faults found in a recording. For motors of rods, only the first fault can be corrected.
   std::vector<RecordingFault> FaultsIn(const Recording& recording, bool with_drift) {
     const CalibrationResult fit = Fit(recording);
     left_ = MarkerError(fit, recording, general_.options);
@@ -179,7 +181,7 @@ class FaultExplanation {
     });
   }
 
-  /// Several slips one way look like a drift, which needs others beside it.
+  /// Tries without a drift: several slips in one direction look like a drift with other faults.
   void TryWithoutDrift() {
     const std::vector<RecordingFault> found = FaultsIn(general_.recording, false);
     if (found.empty()) return;
@@ -197,7 +199,7 @@ class FaultExplanation {
     return recording;
   }
 
-  /// What was taken for a fault while others were unknown may be none.
+  /// Estimates all faults together; what seemed a fault while others were unknown may be none.
   void EstimateTogether() {
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       for (RecordingFault& one : faults_) {
@@ -213,8 +215,8 @@ class FaultExplanation {
     complete_ = std::abs(faults_.front().size) >= kFewestSds * faults_.front().sd;
   }
 
-  /// A cluster that is elsewhere on its link from where the first fault begins, if that leaves less
-  /// than so many times what the faults do; else empty.
+  /// A cluster that is displaced on its link from where the first fault begins, if that leaves less
+  /// than `times` the error that the faults leave; else empty.
   std::string MovedCluster(double times) const {
     const RecordingFault& first = general_.fault;
     const bool begins = first.kind == FaultKind::kJointOffset && first.linkage < 0 &&
@@ -238,7 +240,7 @@ class FaultExplanation {
       }
     }
     if (found.empty()) return "";
-    // Another robot moves other clusters as well.
+    // Another robot displaces other clusters as well.
     const CalibrationResult fit = Fit(best);
     if (!FindRecordingFaults(fit, best.recording, general_.options).empty()) return "";
     return fmt::format(
@@ -247,7 +249,7 @@ class FaultExplanation {
         found, DescribePosture(general_.recording, found_at));
   }
 
-  /// With the markers of a cluster as two sets, within the postures and beside them.
+  /// Splits the markers of a cluster into those within the postures and those outside.
   SplitRecording SplitWithin(const LabelCluster& cluster, int begin, int end) const {
     SplitRecording split{general_.model, general_.recording};
     std::vector<Knock> knocks;
@@ -268,8 +270,8 @@ class FaultExplanation {
     return stretches;
   }
 
-  /// Those, with the markers that are seen within these postures and beside them, whose
-  /// displacement may look like faults of that kind.
+  /// Clusters whose markers are seen within these postures and outside, and whose displacement may
+  /// look like faults of that kind.
   std::vector<LabelCluster> MovableClusters(FaultKind kind, int from, int to) const {
     std::vector<LabelCluster> clusters = SeenClusters(project_, general_.recording);
     const int count = general_.recording.posture_count();
@@ -290,7 +292,7 @@ class FaultExplanation {
     return clusters;
   }
 
-  /// Postures in which a cluster may be elsewhere where a joint seems to be: of a trial, all.
+  /// The postures in which a cluster may be displaced instead of a joint; in a trial, all.
   std::pair<int, int> StretchOf(const RecordingFault& fault) const {
     const Recording& recording = general_.recording;
     const int count = recording.posture_count();
@@ -307,7 +309,7 @@ class FaultExplanation {
     return false;
   }
 
-  /// Offsets of different joints that begin where this one does, it among them.
+  /// Offsets of joints that begin at the same posture as this one, itself included.
   std::vector<RecordingFault> BeginWith(const RecordingFault& first) const {
     std::vector<RecordingFault> there;
     if (first.kind != FaultKind::kJointOffset) return there;
@@ -349,7 +351,7 @@ class FaultExplanation {
         fmt::join(sizes, ", "), IfHomed(joints));
   }
 
-  /// What corrects them, where all that was found are they.
+  /// The correction, if these joints are all that was found.
   std::string IfHomed(const std::vector<RecordingFault>& joints) const {
     if (!complete_ || joints.size() < faults_.size() || joints.size() > kFewHomed) return "";
     std::string names;
@@ -364,8 +366,8 @@ class FaultExplanation {
   const GeneralFault& general_;
   const Project& project_;
   std::vector<RecordingFault> faults_;
-  bool complete_ = false;  ///< nothing is found beside them, and they explain the recording
-  double left_ = 0.0;      ///< by the last fit, m
+  bool complete_ = false;  ///< nothing is found beside the faults, and they explain the recording
+  double left_ = 0.0;      ///< error of the last fit, m
 };
 
 }  // namespace

@@ -11,11 +11,12 @@
 
 namespace elastocal {
 
-/// How a recording is fitted.
+/// Function that fits a recording.
 using FitOf =
     std::function<CalibrationResult(const ErrorModel&, const BaseParameters&, const Recording&)>;
 
-/// The fault that explains most of what a fit leaves, and what was fitted.
+/// Inputs of ExplainFault: the fault that explains most of the residuals of a fit, and what was
+/// fitted.
 struct GeneralFault {
   RecordingFault fault;
   ErrorModel model;
@@ -23,28 +24,32 @@ struct GeneralFault {
   Recording recording;
   ModelKind kind = ModelKind::kGeometric;
   CalibrationOptions options;
-  Recording held_out = {};  ///< trials for validation, by which gains are placed; may be empty
-  FitOf fit = {};           ///< instead of Calibrate, of robots whose joints are known
+  /// Trials for validation, which tell in which trials gains are; may be empty.
+  Recording held_out = {};
+  FitOf fit = {};  ///< replaces Calibrate, for robots whose joints are known; empty: Calibrate
 };
 
-/// "arm_4_joint: its positions are 1.05 +- 0.01 times the true ones (--accept NAME corrects it)"
+/// Text such as "arm_4_joint: its positions are 1.05 +- 0.01 times the true ones (--accept NAME
+/// corrects it)".
 std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
                            const Recording& recording);
 
+/// Result of ExplainFault.
 struct FaultsInWords {
   std::string text;
   bool complete = false;  ///< few faults explain the recording
-  double left = 0.0;      ///< rms distance of the markers from a robot fitted without them, m
+  /// Rms distance of the markers from a robot that is fitted without the faults, m.
+  double left = 0.0;
   std::vector<RecordingFault> faults = {};
 };
 
-/// The same, once it is known whether it is the only one. What explains most need not be what is
-/// wrong: the fault is undone, the robot fitted again, and what is left searched as before, until
-/// nothing is found. Several faults are said together, each by its size beside the others. Where a
-/// cluster that is elsewhere on its link from there on explains as much as several joints do, it is
-/// the cluster; joints that are off from the same posture or in the same trial are another
-/// robot or a new zero of all; and where four faults do not explain the recording, the sentence
-/// says that, and recommends no correction.
+/// Finds out whether the fault is the only one, and describes the result. The fault that explains
+/// most need not be the true one: it is corrected, the robot is fitted again, and the residuals are
+/// searched as before, until nothing is found. Several faults are named together, each with its
+/// size beside the others. If a cluster that is displaced on its link from the same posture on
+/// explains as much as several joints do, the cluster is named. Joints that are off from the same
+/// posture on, or in the same trial, are named as another robot or as new zeros of all of them. If
+/// four faults do not explain the recording, the sentence says so and recommends no correction.
 FaultsInWords ExplainFault(const GeneralFault& general, const Project& project);
 
 }  // namespace elastocal

@@ -20,8 +20,8 @@ bool IsWithin(const std::string& group, const std::string& other) {
   return true;
 }
 
-/// Over all observations of the groups within `group`: limbs that a held-out trial moves together
-/// may have been measured one after the other.
+/// RMSE over all observations of the groups within `group`: limbs that a held-out trial moves
+/// together may have been measured one after the other.
 double RmseWithin(const ErrorTable& table, const std::string& group, ModelKind kind) {
   double squares = 0.0;
   double count = 0.0;
@@ -46,7 +46,7 @@ Contrast LargestOfGroups(const ErrorTable& fitted, const ErrorTable& held_out, M
   return largest;
 }
 
-/// Root mean square of the markers over the trials that show them; 0 where none does.
+/// Root mean square error of the markers over the trials that show them; 0 where none does.
 double RmseOfMarkers(const ErrorTable& table, const std::vector<int>& markers, ModelKind kind) {
   double squares = 0.0;
   double count = 0.0;
@@ -65,7 +65,7 @@ double RmseOfMarkers(const ErrorTable& table, const std::vector<int>& markers, M
   return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
-/// The same of the clusters: a neck is a small part of what it moves with.
+/// The largest ratio of a cluster, since a neck is a small part of its group.
 double LargestRatioOfClusters(const ErrorTable& fitted, const ErrorTable& held_out,
                               const std::vector<LabelCluster>& clusters, ModelKind kind) {
   double largest = 0.0;

@@ -11,9 +11,9 @@
 
 namespace elastocal {
 
-inline constexpr double kSuspicious = 3.0;  ///< times the error on the trials of the estimate
-/// Of the uncalibrated error: a fit that is better than this on postures at rest is not expected to
-/// be as good in motion, which statics does not describe.
+inline constexpr double kSuspicious = 3.0;  ///< ratio to the error on the trials of the estimate
+/// Share of the uncalibrated error. A fit that is better than this on postures at rest is not
+/// expected to be as good in motion, which statics does not describe.
 inline constexpr double kBestExpected = 0.03;
 
 /// A group of chains whose held-out trials the largest model predicts worse than it fits those of
@@ -21,25 +21,26 @@ inline constexpr double kBestExpected = 0.03;
 struct Contrast {
   std::string group;
   double fitted = 0.0, uncalibrated = 0.0, held_out = 0.0;  // m
-  double largest_of_clusters = 0.0;                         // of the ratios of all clusters
+  double largest_of_clusters = 0.0;                         // largest ratio of a cluster
   double ratio() const;
-  bool suspicious() const;  ///< by a factor of three
+  bool suspicious() const;  ///< a ratio of more than three
 };
 
-/// The largest one, of the groups and of the clusters: a neck is a small part of what it moves
-/// with.
+/// The largest contrast of the groups and of the clusters, since a neck is a small part of its
+/// group.
 Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out,
                          const std::vector<LabelCluster>& clusters, ModelKind kind);
 
-/// Clusters whose markers the model has elsewhere in some held-out trials, by three times its error
-/// on those of the estimate, the worst first: in `all`, the trials of the estimate come first, and
-/// then the held-out ones.
+/// Clusters that may be displaced in some held-out trials, because their error there exceeds three
+/// times that in the trials of the estimate; the worst first. In `all`, the trials of the estimate
+/// come first, then the held-out ones.
 std::vector<MovedSuspect> MovedSuspects(const std::vector<LabelCluster>& clusters,
                                         const ErrorTable& fitted, const ErrorTable& held_out,
                                         ModelKind kind, const Recording& all);
 
-/// In a sine the acceleration is proportional to the position, and so is what inertia bends: at
-/// half a hertz, a joint that would swing at 5 Hz seems to have a gain of 1 % in such a trial.
+/// Whether a gain may be due to inertia. In a sinusoidal motion the acceleration is proportional to
+/// the position, and so is the deflection by inertia: at half a hertz, a joint with a natural
+/// frequency of 5 Hz seems to have a gain of 1 %.
 bool MayBeInertia(const RecordingFault& fault, const Recording& recording);
 
 }  // namespace elastocal

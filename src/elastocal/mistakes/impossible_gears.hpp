@@ -9,13 +9,14 @@
 
 namespace elastocal {
 
-/// Gains of sliding joints are what a wrong scale of the cameras looks like: several that are alike
-/// are one, and of one that the other lengths bear out both are said. Nothing for other faults.
+/// Gains of prismatic joints look like a wrong scale of the cameras. Several similar ones are
+/// described as one scale; where the other lengths agree with a single one, both explanations are
+/// given. Empty for other faults.
 std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
                           const CalibrationResult& result, const CalibrationOptions& options);
 
-/// Joints whose gear or lead seems further off than any is made (FindRecordingFaults: 0.5 %): what
-/// was taken for a cause of the robot is a wrong gain in its log.
+/// Joints whose estimated gear or lead error is larger than any in a real robot (0.5 %, as in
+/// FindRecordingFaults). Such a cause is a wrong gain in the joint's log.
 std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result);
 
 }  // namespace elastocal

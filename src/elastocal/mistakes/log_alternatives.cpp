@@ -34,7 +34,7 @@ std::vector<LogAlternative> OtherColumns(const Recording& recording, const Robot
     if (joint.mimic || IsMovedByRods(tree, k)) continue;
     const auto column = recording.q.col(joint.coordinate);
     if (!(column.maxCoeff() > column.minCoeff())) continue;
-    for (const int by : {-1, 1}) {  // the row that its positions belong to, less their own
+    for (const int by : {-1, 1}) {  // offset to the row to which its positions belong
       std::vector<int> rows;
       for (int i = std::max(0, by); i < count + std::min(0, by); ++i) rows.push_back(i);
       Recording other = SelectPostures(recording, rows);

@@ -15,7 +15,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeftBySprings = 0.5;  // of the error of the fit
+constexpr double kLeftBySprings = 0.5;  // share of the error of the fit
 
 bool HoldsSomethingRigid(const ElasticityChoice& choice) {
   if (!choice.base) return true;
@@ -31,7 +31,7 @@ bool HasSprings(const ElasticityChoice& choice) {
 
 std::string FindMissedSprings(const Project& project, std::optional<std::uint64_t> seed,
                               const Measurements& as_recorded, double left, double left_otherwise) {
-  // With a prior, it is the earlier calibration that decided on springs.
+  // With a prior, the earlier calibration has decided on springs.
   if (as_recorded.calibration.trials.empty() || !HoldsSomethingRigid(project.elasticity) ||
       !HasMasses(project.tree) || !project.calibration.earlier.empty()) {
     return "";

@@ -18,12 +18,12 @@ namespace elastocal {
 namespace {
 
 constexpr std::size_t kMostSuspects = 3;
-constexpr double kLeftWhereMoved = 0.5;   // of the error with the cluster in one place
+constexpr double kLeftWhereMoved = 0.5;   // ratio to the error with the cluster in one place
 constexpr double kLeastMoved = 1e-3;      // m
-constexpr double kOneAlone = 3.0;         // times any other marker of the cluster
-constexpr double kLabelDistance = 20e-3;  // m: of one marker, which no glue lets slip so far
+constexpr double kOneAlone = 3.0;         // ratio to any other marker of the cluster
+constexpr double kLabelDistance = 20e-3;  // m: displacement of one marker, beyond what glue allows
 
-/// Whether a marker is seen in any of these postures, or any other one.
+/// Whether a marker is seen in any of these postures, or (`other`) in any of the others.
 bool IsSeen(const Recording& recording, int marker, const std::vector<char>& postures, bool other) {
   for (int i = 0; i < recording.posture_count(); ++i) {
     if ((postures[Size(i)] == 0) == other && Seen(recording, i, marker)) return true;
@@ -31,10 +31,10 @@ bool IsSeen(const Recording& recording, int marker, const std::vector<char>& pos
   return false;
 }
 
-/// A suspect that was taken as two clusters.
+/// Result of splitting a suspect into two clusters.
 struct Moved {
-  std::vector<std::string> names;  ///< of its markers
-  std::vector<double> distances;   ///< of the two places of each, m
+  std::vector<std::string> names;  ///< names of its markers
+  std::vector<double> distances;   ///< distance between the two positions of each, m
   double left = 0.0;               ///< rms distance of all markers from the fit, m
 };
 

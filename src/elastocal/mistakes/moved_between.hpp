@@ -11,18 +11,18 @@
 
 namespace elastocal {
 
-/// A cluster that may be elsewhere on its link in some trials.
+/// A cluster that may be displaced on its link in some trials.
 struct MovedSuspect {
   LabelCluster cluster;
-  std::vector<char> there;  ///< by posture: whether it is one of these trials
+  std::vector<char> there;  ///< for each posture: whether it belongs to these trials
 };
 
-/// The suspect that is elsewhere on its link in its trials, in words; empty where none is. Each is
-/// taken as two clusters, and the robot fitted again (at most the first three): it is elsewhere if
-/// less than half of the error of `together` is left, and if it is by 1 mm and more. Where one
-/// marker is displaced by three times any other one of its cluster, it is that marker, which may
-/// have the label of another one. `all`: recording of `together`; `fit`: how that came about, if
-/// not by Calibrate.
+/// Describes the suspect that is displaced on its link in its trials; empty where none is. Each
+/// suspect (at most the first three) is split into two clusters, and the robot is fitted again. It
+/// is displaced if less than half of the error of `together` is left, and if the displacement is at
+/// least 1 mm. If one marker is displaced by three times as much as any other of its cluster, that
+/// marker is named, which may have the label of another one. `all` is the recording of `together`;
+/// `fit` is the function that made it, if not Calibrate.
 std::string FindMovedBetween(const Project& project, const CalibrationResult& together,
                              const Recording& all, const CalibrationOptions& options,
                              const std::vector<MovedSuspect>& suspects, const FitOf& fit = {});

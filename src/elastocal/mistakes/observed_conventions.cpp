@@ -20,7 +20,7 @@
 namespace elastocal {
 namespace {
 
-/// Quaternions are x, y, z, w.
+/// Attitude of a pose, whose quaternion is x, y, z, w.
 Eigen::Quaterniond AttitudeIn(const Eigen::VectorXd& pose) {
   return Eigen::Quaterniond(Eigen::Vector4d(pose.tail<4>()));
 }
@@ -48,7 +48,7 @@ Eigen::VectorXd Inverse(const Eigen::VectorXd& pose) {
   return PoseOf(back * Eigen::Vector3d(-pose.head<3>()), back);
 }
 
-/// Reverses y of a position, and of a pose.
+/// Reverses y of a position, or of a pose.
 Eigen::VectorXd Mirrored(const Eigen::VectorXd& measured) {
   Eigen::VectorXd mirrored = measured;
   mirrored[1] *= -1.0;
@@ -65,7 +65,7 @@ Eigen::VectorXd WithUvExchanged(const Eigen::VectorXd& corners) {
   return exchanged;
 }
 
-/// Counted downwards, where the centre of the camera is in the middle of the image.
+/// Reverses v of the corners; the centre of the camera counts as the middle of the image.
 Eigen::VectorXd WithVDownwards(const Instrument& instrument, const Eigen::VectorXd& corners) {
   const auto& tag = dynamic_cast<const SeenTag&>(instrument);
   Eigen::VectorXd downwards = corners;
@@ -73,7 +73,7 @@ Eigen::VectorXd WithVDownwards(const Instrument& instrument, const Eigen::Vector
   return downwards;
 }
 
-/// Of corners that run clockwise from that of this number.
+/// Reorders corners that run clockwise from number `first`.
 Eigen::VectorXd Counterclockwise(const Eigen::VectorXd& corners, int first) {
   Eigen::VectorXd turned = corners;
   for (int corner = 0; corner < 4; ++corner) {
@@ -82,7 +82,7 @@ Eigen::VectorXd Counterclockwise(const Eigen::VectorXd& corners, int first) {
   return turned;
 }
 
-/// Of corners that run counterclockwise from that of this number.
+/// Reorders corners that run counterclockwise from number `first`.
 Eigen::VectorXd FromBelowLeft(const Eigen::VectorXd& corners, int first) {
   Eigen::VectorXd turned = corners;
   for (int corner = 0; corner < 4; ++corner) {
@@ -91,7 +91,7 @@ Eigen::VectorXd FromBelowLeft(const Eigen::VectorXd& corners, int first) {
   return turned;
 }
 
-/// With all tags `factor` times as large, or those that `holds` alone.
+/// The robot with tags of `factor` times their size: all, or those for which `holds` is true.
 ObservedRobot WithTagsOf(const ObservedRobot& model, double factor, const auto& holds) {
   ObservedRobot robot = model;
   for (auto& instrument : robot.setup.instruments) {
@@ -111,14 +111,14 @@ bool IsOf(const Instrument& instrument, const MeasuredBy& of) {
 
 class Conventions {
  public:
-  /// `of`: what one of several alike measured; empty: what all did.
+  /// `of` is the device whose measurements are rewritten; empty: all.
   Conventions(const ObservedRobot& model, const Observations& observations,
               std::optional<MeasuredBy> of)
       : model_(model), observations_(observations), of_(std::move(of)) {}
 
   bool Holds(const Instrument& instrument) const { return !of_ || IsOf(instrument, *of_); }
 
-  /// The project has all tags with a multiple of their size.
+  /// Adds that the project has a multiple of the size of all tags.
   void AddSizeOfTags(double factor) {
     WrittenConvention convention{"size_mm of tags is " +
                                      std::to_string(std::lround(std::max(factor, 1.0 / factor))) +
@@ -129,7 +129,8 @@ class Conventions {
     Take(std::move(convention));
   }
 
-  /// Rewrites what instruments of these kinds measured, if there are any.
+  /// Adds a convention that rewrites the measurements of these kinds of instruments, if there are
+  /// any.
   void Add(const std::vector<std::string_view>& kinds, const auto& rewrite, const std::string& what,
            const std::string& right, const std::string& family = "") {
     WrittenConvention convention{what, right, family, observations_};
@@ -150,7 +151,7 @@ class Conventions {
     if (any) Take(std::move(convention));
   }
 
-  /// The project has the plate's face on the other side of the hand.
+  /// Adds that the project has the plate's face on the other side of the hand.
   void AddSideOfPlates() {
     WrittenConvention convention{"the normal of plates points into the table", "out of the table",
                                  "", observations_};
@@ -243,7 +244,7 @@ void AddOfTags(Conventions& conventions) {
   }
 }
 
-/// Lengths that trackers, gauges or wires measured, in another unit than m.
+/// Adds other units than m for lengths that trackers, gauges or wires measured.
 void AddUnits(Conventions& conventions, const std::vector<std::string_view>& kinds,
               const std::string& what) {
   const std::pair<const char*, double> units[] = {
@@ -286,7 +287,7 @@ void AddOfInertialUnits(Conventions& conventions) {
 
 std::optional<WrittenConvention> CamerasAsBodies(const ObservedRobot& model,
                                                  const Observations& observations) {
-  std::set<int> cameras;  // quantities
+  std::set<int> cameras;  // indices of quantities
   for (const Observation& of : observations.all) {
     const Instrument& instrument = model.instrument(of.instrument);
     if (TagSeenBy(instrument) >= 0) cameras.insert(instrument.quantities.front());

@@ -75,10 +75,10 @@ std::string ApplyStated(const std::string& name, const StatedCorrection& correct
   return fmt::format("{}: {}", correction.joint, name);
 }
 
-/// "sign:a3@day2.csv:14" in its parts.
+/// The parts of a name such as "sign:a3@day2.csv:14".
 struct NamedCorrection {
-  std::string word;  ///< sign
-  std::string of;    ///< a3
+  std::string word;  ///< for example "sign"
+  std::string of;    ///< for example "a3"
   std::string file = {};
   int from = 1;
 
@@ -128,7 +128,7 @@ int InstrumentOf(const std::string& name, const std::string& instrument,
   RefuseName(name, "no instrument is called '" + instrument + "'; there are: " + known);
 }
 
-/// Undoes it; what was undone.
+/// Makes the correction of a name; returns its description.
 std::string ApplyName(const std::string& name, const ObservedRobot& model,
                       Observations& observations) {
   const RobotTree& tree = model.robot.tree;
@@ -224,7 +224,7 @@ std::optional<std::string> NameOfFault(const ObservationFault& fault, const Obse
   const bool slides = JointOfCoordinate(tree, fault.coordinate).type == JointType::kPrismatic;
   const double size = fault.size / (slides ? 1e-3 : M_PI / 180.0);
   std::string names;
-  int number = 0;  // of the posture in its file
+  int number = 0;  // number of the posture in its file
   for (int i = 0; i < observations.posture_count(); ++i) {
     const int file = observations.postures[Size(i)].file;
     const bool begins = i == 0 || file != observations.postures[Size(i - 1)].file;
@@ -239,7 +239,7 @@ std::optional<std::string> NameOfFault(const ObservationFault& fault, const Obse
 
 std::vector<char> PosturesOf(const Observations& observations, const std::string& file, int from) {
   std::vector<char> here(Size(observations.posture_count()), 0);
-  int number = 0;  // of the posture in its file
+  int number = 0;  // number of the posture in its file
   for (int i = 0; i < observations.posture_count(); ++i) {
     const int of = observations.postures[Size(i)].file;
     const bool begins = i == 0 || of != observations.postures[Size(i - 1)].file;
@@ -282,7 +282,8 @@ Observations WithLabelsExchanged(const Observations& observations, int a, int b,
     if (observation.instrument == a) of_a[observation.posture] = &observation;
     if (observation.instrument == b) of_b[observation.posture] = &observation;
   }
-  // What acts on the quantities of the other instrument, as in the next posture that it measured.
+  // Effects on the quantities of the other instrument, as in the next posture that it measured (or
+  // the last one).
   const auto effects_of = [](const std::map<int, const Observation*>& other, int posture) {
     if (other.empty()) return std::vector<int>();
     const auto next = other.lower_bound(posture);

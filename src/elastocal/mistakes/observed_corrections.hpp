@@ -9,7 +9,7 @@
 
 namespace elastocal {
 
-/// What `--accept` undoes in tables of observations:
+/// Corrections that `--accept` makes in tables of observations:
 ///
 ///     sign:JOINT               the sign of the joint's positions is reversed
 ///     exchange:JOINT,JOINT     the positions of two joints are exchanged
@@ -25,36 +25,37 @@ namespace elastocal {
 ///     scale=1.02               positions and lengths as measured are 1.02 times the true ones
 ///     scale:FILE=1.02          in this file alone
 ///
-/// All but `frozen` are done as they say. Returns what was undone, in words. Throws InputError for
-/// other names, joints or files that are not there, sizes that no fault has
-/// (ParseStatedCorrection), a scale where nothing measures lengths, and joints that are not frozen
-/// anywhere.
+/// All but `frozen` are made as they say. Returns descriptions of the corrections. Throws
+/// InputError for other names, for joints or files that do not exist, for sizes that no fault has
+/// (ParseStatedCorrection), for a scale where nothing measures lengths, and for joints that are
+/// frozen nowhere.
 std::vector<std::string> CorrectObservations(const std::vector<std::string>& accepted,
                                              const ObservedRobot& model,
                                              Observations& observations);
 
-/// What these names call a file: without its folder.
+/// Name of a file in `--accept`: without its folder.
 std::string NameInAccept(const std::string& file);
 
-/// The name that undoes a fault. Nothing for what was moved: rows from there on belong into a file
-/// of their own; nor for sizes of tags, which are corrected in the project.
+/// The name that corrects a fault. Nothing for a displacement, because rows from there on belong
+/// into their own file, and for sizes of tags, which are corrected in the project.
 std::optional<std::string> NameOfFault(const ObservationFault& fault, const ObservedRobot& model,
                                        const Observations& observations);
 
-/// Which postures belong to a file, from one of its postures on (counted from 1); to all files
-/// where `file` is empty.
+/// For each posture: whether it belongs to a file, from one of the file's postures on (counted from
+/// 1); to any file where `file` is empty.
 std::vector<char> PosturesOf(const Observations& observations, const std::string& file, int from);
 
-/// What was observed in each posture of `here`, with the joint positions of another one, so many
-/// rows further in the same file; postures without such a row are left out.
+/// The observations in each posture of `here`, with the joint positions of the row `further` rows
+/// later in the same file. Postures without such a row are left out.
 Observations WithRowsOf(const Observations& observations, int further,
                         const std::vector<char>& here);
 
-/// Whether two instruments are of one kind, so that what they measured can be exchanged. Touches
+/// Whether two instruments are of one kind, so that their measurements can be exchanged. Touches
 /// measure nothing.
 bool MeasureAlike(const ObservedRobot& model, int a, int b);
 
-/// With what two instruments that measure alike showed exchanged in the postures of `here`.
+/// The observations with the measurements of two similar instruments exchanged in the postures of
+/// `here`.
 Observations WithLabelsExchanged(const Observations& observations, int a, int b,
                                  const std::vector<char>& here);
 

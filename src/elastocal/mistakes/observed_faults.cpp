@@ -20,12 +20,11 @@
 namespace elastocal {
 namespace {
 
-constexpr double kHalved = 0.5;         // what a fault may leave once it is undone
-constexpr std::size_t kMostFaults = 8;  // that are tried by a fit
+constexpr double kHalved = 0.5;         // largest share that is left with a fault corrected
+constexpr std::size_t kMostFaults = 8;  // number of faults that are tried by a fit
 
-/// Root mean square, by degrees of freedom, of what a fit leaves in observations, but for some that
-/// are left out, in units of the noise of `spread`. A fit to few observations leaves little,
-/// whatever they are.
+/// Root mean square residual of a fit, by degrees of freedom, without some observations, in units
+/// of the noise of `spread`. A fit to few observations leaves small residuals, whatever they are.
 double RmsLeft(const ObservedRobot& model, const Observations& observations,
                const ObservationFit& fit, const Spread& spread,
                const std::vector<ObservationOutlier>& outliers) {
@@ -73,8 +72,9 @@ std::string RemedyOf(const ObservationFault& fault, const ObservedRobot& model,
              : "calibrate the rows before and after apart";
 }
 
-/// What a fit without the fault leaves of what is left with it. Postures that are frozen count
-/// before: they were left out as outliers at best; the others are too few to say what is noise.
+/// Ratio of the residuals of a fit with the fault corrected to those with the fault. Frozen
+/// postures count in the latter: at best they were left out as outliers, and the other postures are
+/// too few to tell the noise.
 double LeftWithout(const ObservedRobot& model, const Observations& observations,
                    const ObservationFit& with, const ObservationFault& fault) {
   const Observations without = WithoutFault(fault, model, observations);
@@ -86,7 +86,8 @@ double LeftWithout(const ObservedRobot& model, const Observations& observations,
                  fewer ? std::vector<ObservationOutlier>() : outliers);
 }
 
-/// Of a wrong scale, most looks like the gain of a sliding joint; without that, lengths tell it.
+/// Finds a scale. A wrong scale looks like the gain of a prismatic joint; without that gain,
+/// lengths determine it.
 std::optional<CommonScale> ScaleBesideRails(const ObservedRobot& model,
                                             const Observations& observations,
                                             const std::vector<ObservationFault>& faults) {
@@ -102,7 +103,7 @@ std::optional<CommonScale> ScaleBesideRails(const ObservedRobot& model,
   return std::nullopt;
 }
 
-/// The largest noise of cameras, in units of what was expected.
+/// The largest noise of cameras, relative to the expected one.
 double NoiseOfCameras(const ObservedRobot& model, const Spread& spread) {
   const std::vector<Source>& sources = model.setup.sources;
   double most = 0.0;
@@ -112,8 +113,8 @@ double NoiseOfCameras(const ObservedRobot& model, const Spread& spread) {
   return most;
 }
 
-/// Tags of another unit, of which cameras that may be elsewhere explain so much that only their
-/// noise is far above what was expected.
+/// Finds tags in another unit. Cameras whose poses are free explain so much of it that only their
+/// noise is far above the expected one.
 std::string UnitOfTags(const ObservedRobot& model, const Observations& observations,
                        const ObservationFit& fit) {
   constexpr double kNoisy = 4.0;

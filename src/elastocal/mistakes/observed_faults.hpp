@@ -8,14 +8,14 @@
 
 namespace elastocal {
 
-/// A fault in words, with what undoes it.
+/// Description of a fault, with its correction.
 std::string DescribeWithRemedy(const ObservationFault& fault, const ObservedRobot& model,
                                const Observations& observations);
 
-/// A fault of the tables that the estimate nearly explains (FindObservationFaults,
-/// FindObservedScale), in a sentence with what undoes it; empty where there is none. The faults
-/// that explain most of what is left are undone in turn, and the one whose fit leaves least is
-/// taken if that is less than half. A scale is told by the lengths of the robot instead.
+/// Finds a fault of the tables that the estimate nearly explains (FindObservationFaults,
+/// FindObservedScale), as a sentence with its correction; empty where there is none. The faults
+/// that explain most of the residuals are corrected in turn, and the one whose fit leaves least is
+/// named if that is less than half. A scale is found by the lengths of the robot instead.
 std::string FindObservedFault(const ObservedRobot& model, const Observations& observations,
                               const ObservationFit& fit);
 

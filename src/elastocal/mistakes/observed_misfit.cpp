@@ -15,11 +15,12 @@ namespace elastocal {
 namespace {
 
 constexpr int kMostMisfitPostures = 24;
-constexpr int kMostUpdates = 50;           // what is no place by then is none
+constexpr int kMostUpdates = 50;           // a placement that has not converged by then is none
 constexpr double kLeastTurn = M_PI / 4.0;  // rad
 constexpr double kManySds = 3.0;
 
-/// The first of the three numbers by which a quantity is turned, where the project says how it
+/// Index of the first of the three rotation numbers of a quantity, where the project states its
+/// orientation.
 /// stands.
 std::optional<int> TurnOf(const Quantity& quantity, const std::vector<Source>& sources) {
   for (int i = 0; i + 2 < quantity.size(); ++i) {

@@ -5,27 +5,27 @@
 
 namespace elastocal {
 
-constexpr int kFewestRowsTried = 8;  ///< postures: of few, anything is explained
+constexpr int kFewestRowsTried = 8;  ///< postures: with fewer, anything can be explained
 
-/// Places the nominal robot among what it sees.
+/// Places the nominal robot by some of the observations.
 ObservedValues PlacedAmong(const ObservedRobot& model, const Observations& some);
 
-/// Squares over the largest errors that calibrated robots have (LargestError), summed over the
-/// kinds of rows.
+/// Sum of squared residuals over the largest errors of calibrated robots (LargestError), by kind of
+/// row.
 double SquaresOf(const ObservedRobot& model, const Observations& some,
                  const ObservedValues& values);
 
-/// How badly the nominal robot explains what it sees.
+/// Misfit of the nominal robot.
 struct ObservedMisfit {
-  double squares = 0.0;  ///< what is left (SquaresOf)
-  /// By how much tags, cameras and inertial units are turned from where the project has them:
-  /// squares over 45 degrees, or three standard deviations where that is more. A tag whose corners
-  /// run the other way round is seen as well as others, from behind.
+  double squares = 0.0;  ///< squares that are left (SquaresOf)
+  /// Rotation of tags, cameras and inertial units from their orientation in the project: squares
+  /// over 45 degrees, or over three standard deviations if those are larger. A tag whose corners
+  /// run the other way round is also seen well, from behind.
   double turned = 0.0;
 };
 
-/// The misfit in some of the postures, evenly spread, once the nominal robot is placed; infinite
-/// where it cannot be placed, and with fewer rows than kFewestRowsTried.
+/// Misfit in some evenly spread postures, after the nominal robot is placed. Infinite where it
+/// cannot be placed, and with fewer rows than kFewestRowsTried.
 ObservedMisfit MisfitOfNominal(const ObservedRobot& model, const Observations& all);
 
 }  // namespace elastocal

@@ -21,8 +21,8 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeftWithout = 0.1;
-constexpr double kNearTheBest = 2.0;  // times the squares that the best one leaves
-constexpr int kMostRowsOff = 2;       // by which rows are shifted
+constexpr double kNearTheBest = 2.0;  // ratio to the squares that the best one leaves
+constexpr int kMostRowsOff = 2;       // largest shift of rows
 
 std::vector<int> Rows(int first, int end) {
   std::vector<int> rows;
@@ -31,20 +31,20 @@ std::vector<int> Rows(int first, int end) {
 }
 
 struct TriedMistake {
-  std::string what;         ///< with the name that undoes it
-  double left = 0.0;        ///< of the squares before
-  std::string family = {};  ///< what it is if others of its family are as good
+  std::string what;         ///< with the name that corrects it
+  double left = 0.0;        ///< share of the squares before
+  std::string family = {};  ///< common name, used if others of its family are as good
 };
 
-/// What is left of the squares before.
+/// Ratio to the squares before.
 double ShareOf(double squares, double before) {
   return std::isfinite(squares) ? squares / before : std::numeric_limits<double>::infinity();
 }
 
-/// Among the rows of a part of the tables.
+/// Search in the rows of a part of the tables.
 class MistakeSearch {
  public:
-  /// `name`: what `--accept` calls the part, "@day2.csv:14"; `where`: the same in words.
+  /// `name` is that of the part in `--accept`, "@day2.csv:14"; `where` is the same as text.
   MistakeSearch(const ObservedRobot& model, const Observations& part, std::string name,
                 std::string where)
       : model_(model),
@@ -56,7 +56,7 @@ class MistakeSearch {
 
   std::vector<std::string> Run() {
     const RobotTree& tree = model_.robot.tree;
-    std::vector<int> moving;  // coordinates
+    std::vector<int> moving;  // coordinates that move
     for (int c = 0; c < tree.coordinate_count(); ++c) {
       const auto values = part_.q.col(c);
       if (values.maxCoeff() > values.minCoeff()) moving.push_back(c);
@@ -64,7 +64,7 @@ class MistakeSearch {
     if (const auto cameras = CamerasAsBodies(model_, part_)) {
       TryConvention(*cameras);
       std::vector<std::string> found = Found();
-      if (!found.empty()) return found;  // all others would begin with cameras turned far
+      if (!found.empty()) return found;  // all others would begin with cameras rotated far
     }
     for (const int c : moving) TrySign(c);
     for (int rows = -kMostRowsOff; rows <= kMostRowsOff; ++rows) {
@@ -85,7 +85,7 @@ class MistakeSearch {
     }
     found = Found();
     if (!found.empty()) return found;
-    for (std::size_t a = 0; a < moving.size(); ++a) {  // hundreds of a humanoid
+    for (std::size_t a = 0; a < moving.size(); ++a) {  // hundreds for a humanoid
       for (std::size_t b = a + 1; b < moving.size(); ++b) {
         if (Slides(moving[a]) == Slides(moving[b])) TryExchange(moving[a], moving[b]);
       }
@@ -111,7 +111,8 @@ class MistakeSearch {
                       ShareOf(MisfitOfNominal(model_, undone).squares, before_.squares)});
   }
 
-  /// Of tags and inertial units the mounting counts: it is turned far where a convention is wrong.
+  /// Tries a convention. For tags and inertial units the mounting counts, too: a wrong convention
+  /// rotates it far.
   void TryConvention(const WrittenConvention& convention) {
     const ObservedRobot& robot = convention.robot ? *convention.robot : model_;
     const ObservedMisfit after = MisfitOfNominal(robot, convention.undone);
@@ -189,8 +190,8 @@ class MistakeSearch {
   std::vector<TriedMistake> tried_;
 };
 
-/// The posture from which on the nominal robot, placed among the first ones, no longer explains
-/// what it sees; nothing where the first ones are no better than all.
+/// The first posture that the nominal robot, placed by the postures before it, does not explain;
+/// nothing where the first postures are no better than all.
 std::optional<int> FirstUnexplained(const ObservedRobot& model, const Observations& of_file) {
   const int count = of_file.posture_count();
   const double all = MisfitOfNominal(model, of_file).squares;
@@ -198,7 +199,7 @@ std::optional<int> FirstUnexplained(const ObservedRobot& model, const Observatio
     const Observations first = SelectPostures(of_file, Rows(0, count / share));
     const ObservedValues placed = PlacedAmong(model, first);
     if (SquaresOf(model, first, placed) > kLeftWithout * all) continue;
-    std::vector<double> logs;  // of what is left of each posture
+    std::vector<double> logs;  // logarithms of the residuals of each posture
     for (int i = 0; i < count; ++i) {
       logs.push_back(
           std::log(std::max(1e-12, SquaresOf(model, SelectPostures(of_file, {i}), placed))));
@@ -206,7 +207,7 @@ std::optional<int> FirstUnexplained(const ObservedRobot& model, const Observatio
     std::vector<double> sum = {0.0};
     for (const double of : logs) sum.push_back(sum.back() + of);
     int best = 0;
-    double most = 0.0;  // the largest step between two means, in units of its standard error
+    double most = 0.0;  // largest step between two means, in units of its standard error
     for (int n = count / share; n <= count - kFewestRowsTried; ++n) {
       const double before = sum[Size(n)] / n, after = (sum.back() - sum[Size(n)]) / (count - n);
       const double step = (after - before) * std::sqrt(1.0 * n * (count - n));
@@ -219,8 +220,8 @@ std::optional<int> FirstUnexplained(const ObservedRobot& model, const Observatio
   return std::nullopt;
 }
 
-/// A few rows that contradict all others, which would hide or feign every other mistake: without
-/// them the nominal robot explains what it sees.
+/// Finds a few rows that contradict all others, and would hide or imitate every other mistake.
+/// Without them the nominal robot explains its observations.
 std::vector<std::string> FindFarRows(const ObservedRobot& model, const Observations& all) {
   constexpr int kMost = 3, kOneIn = 10;
   constexpr double kFar = 25.0;  // times the median of the squares
@@ -249,7 +250,7 @@ std::vector<std::string> FindFarRows(const ObservedRobot& model, const Observati
   return found;
 }
 
-/// In the rows of one file alone: all of them, or from one on.
+/// Finds mistakes in one file: in all its rows, or from one row on.
 std::vector<std::string> FindInFile(const ObservedRobot& model, const Observations& of_file,
                                     const std::string& file, bool others) {
   if (others) {

@@ -13,7 +13,8 @@
 namespace elastocal {
 namespace {
 
-/// A tip that touches a plane measures the length 0, which no scale changes.
+/// Whether any length was measured. A tip that touches a plane measures the length 0, which no
+/// scale changes.
 bool LengthsWereMeasured(const ObservedRobot& model, const Observations& observations) {
   constexpr double kNoLength = 1e-3;  // m
   return std::any_of(observations.all.begin(), observations.all.end(), [&](const Observation& of) {
@@ -28,7 +29,7 @@ bool TagsWereSeen(const ObservedRobot& model, const Observations& observations) 
   });
 }
 
-/// "100 or 82", and what they are over a factor: "97.66 or 80.08", mm.
+/// Sizes as text, "100 or 82", and the same divided by a factor, "97.66 or 80.08", mm.
 struct Sizes {
   std::string written, right;
 };
@@ -56,7 +57,7 @@ std::optional<CommonScale> FindObservedScale(const ObservedRobot& model,
                                              const Observations& observations,
                                              const ObservationFit& fit) {
   const bool told = LengthsWereMeasured(model, observations) || TagsWereSeen(model, observations);
-  // Where an earlier calibration tells the lengths, a scale is sought like other faults.
+  // With an earlier calibration, which tells the lengths, a scale is found like other faults.
   if (!told || !model.earlier.empty()) return std::nullopt;
   CalibrationResult result = InformationOfContacts(model, observations, fit);
   const std::vector<Source> common = CommonSources();
@@ -66,7 +67,7 @@ std::optional<CommonScale> FindObservedScale(const ObservedRobot& model,
 
 std::string DescribeScale(const CommonScale& scale, const ObservedRobot& model,
                           const Observations& observations) {
-  constexpr double kLargestAccepted = 2.0;  // beyond, it is a unit
+  constexpr double kLargestAccepted = 2.0;  // a larger factor is another unit
   const double factor = 1.0 + scale.size;
   const bool accepted = factor < kLargestAccepted && factor > 1.0 / kLargestAccepted;
   const bool lengths = LengthsWereMeasured(model, observations);

@@ -10,22 +10,22 @@
 
 namespace elastocal {
 
-/// An estimated offset of a joint that no assembly of a robot explains.
+/// An estimated joint offset that no assembly of a robot explains.
 struct TurnedZero {
   int coordinate = 0;
   double offset = 0.0;  ///< rad
 };
 
-/// What a posture table says once the offsets of the joints and the places of the markers are
-/// estimated, and nothing else of the robot.
+/// Fit of a posture table in which only joint offsets and marker positions are estimated.
 struct OffsetsFit {
   double error = std::numeric_limits<double>::infinity();  ///< rms distance of the markers, m
-  bool robot = false;              ///< whether some robot may have the offsets
-  std::vector<TurnedZero> turned;  ///< offsets above an eighth of a turn
-  double off_project = 0.0;        ///< mean distance of a marker from where the project has it, m
+  bool robot = false;                                      ///< the offsets are possible for a robot
+  std::vector<TurnedZero> turned;  ///< offsets of more than an eighth of a turn
+  /// Mean distance of the markers from their positions in the project, m.
+  double off_project = 0.0;
 };
 
-/// Estimates them. The error stays infinite where nothing can be estimated.
+/// Makes the fit. The error stays infinite where nothing can be estimated.
 OffsetsFit FitOffsets(const Project& project, const ErrorModel& model, const Recording& recording);
 
 }  // namespace elastocal

@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-/// A joint, and which of those that it follows.
+/// A joint, and the place of the joint that it follows.
 struct Follower {
   std::size_t joint = 0, drive = 0;
 };

@@ -8,14 +8,14 @@
 
 namespace elastocal {
 
-/// A project in which joints follow others otherwise than described.
+/// A project in which joints follow others differently.
 struct FollowerAlternative {
   std::string what;  ///< the mistake, in words
   Project project;
 };
 
-/// Coupled and mimic joints that follow the other way, or not at all: each by itself, and all that
-/// follow the same one.
+/// Projects in which coupled or mimic joints follow with the opposite sign, or not at all: each by
+/// itself, and all that follow the same joint.
 std::vector<FollowerAlternative> OtherFollowers(const Project& project);
 
 }  // namespace elastocal

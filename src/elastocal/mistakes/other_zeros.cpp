@@ -17,9 +17,11 @@ namespace elastocal {
 namespace {
 
 constexpr double kQuarter = std::numbers::pi / 2.0;
-constexpr double kNearQuarters = 0.2;    // of a quarter of a turn: an assembly with another zero
-constexpr double kAsWellAsTurned = 1.1;  // of what the offsets leave that no robot has
-constexpr double kLeastRange = 0.05;     // rad or m: of a joint whose sign can be told
+// Share of a quarter of a turn within which an offset is another zero.
+constexpr double kNearQuarters = 0.2;
+constexpr double kAsWellAsTurned = 1.1;  // ratio to the error that impossible offsets leave
+// Rad or m: range from which the sign of a joint can be determined.
+constexpr double kLeastRange = 0.05;
 constexpr std::size_t kMostTurned = 6;
 
 LogAlternative WithOtherZero(const Recording& recording, const RobotTree& tree, int coordinate,
@@ -42,7 +44,7 @@ LogAlternative WithOtherSign(const Recording& recording, const RobotTree& tree, 
           WithoutMistake(recording, sign, tree)};
 }
 
-/// The joint, the one before it and those after it, as entries of q.
+/// Coordinates of the joint, of the one before it and of those after it.
 std::set<int> Neighbours(const RobotTree& tree, int coordinate) {
   const int joint = tree.coordinate_joint[Size(coordinate)];
   std::set<int> near{coordinate};
@@ -54,7 +56,7 @@ std::set<int> Neighbours(const RobotTree& tree, int coordinate) {
   return near;
 }
 
-/// What may make this offset of a joint.
+/// Mistakes that could cause this offset of a joint.
 std::vector<LogAlternative> Explanations(const Recording& recording, const RobotTree& tree,
                                          const TurnedZero& turned) {
   std::vector<LogAlternative> all;

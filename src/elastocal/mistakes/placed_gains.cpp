@@ -14,8 +14,9 @@ namespace elastocal {
 namespace {
 
 constexpr int kUpdatesOfPlaced = 15;
-constexpr double kToldShare = 0.2;    // of the gain: standard deviation of what a trial shows
-constexpr double kLackedShare = 0.5;  // of the gain: a trial that shows less does not have it
+// Share of the gain: largest standard deviation in a trial that tells of it.
+constexpr double kToldShare = 0.2;
+constexpr double kLackedShare = 0.5;  // share of the gain: a trial that shows less does not have it
 
 bool IsInAllTrials(const RecordingFault& fault) {
   return fault.kind == FaultKind::kJointGain && fault.coordinate >= 0 && fault.linkage < 0 &&
@@ -57,7 +58,7 @@ std::vector<RecordingFault> PlaceGains(const std::vector<RecordingFault>& faults
       if (!lacked || there.empty()) there = {fault};
       placed.insert(placed.end(), there.begin(), there.end());
     }
-  } catch (const InputError&) {  // nothing is told
+  } catch (const InputError&) {  // no trial tells
     return faults;
   }
   return placed;

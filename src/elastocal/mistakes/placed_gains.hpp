@@ -7,10 +7,11 @@
 
 namespace elastocal {
 
-/// Gains of joints that the trials of the estimate show, all of them with one size, are gains of
-/// these trials alone where held-out trials that move the joint do not have them: each is then one
-/// fault for each trial of the estimate that moves it. Other faults, and gains of which no held-out
-/// trial tells, stay as they are. `undone`: what was fitted, without the faults.
+/// Assigns gains of joints to trials. A gain of one size in all trials of the estimate is a fault
+/// of these trials alone if held-out trials that move the joint do not have it. It then becomes one
+/// fault for each trial of the estimate that moves the joint. Other faults, and gains of which no
+/// held-out trial tells, stay unchanged. `undone` is the fitted recording with the faults
+/// corrected.
 std::vector<RecordingFault> PlaceGains(const std::vector<RecordingFault>& faults,
                                        const Recording& undone, const GeneralFault& general);
 

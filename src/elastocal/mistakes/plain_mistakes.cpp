@@ -33,30 +33,30 @@
 namespace elastocal {
 namespace {
 
-constexpr int kFewestPlaced = 8;  // of few, anything is explained
-// No robot whose errors are estimated leaves more, m and of its size:
+constexpr int kFewestPlaced = 8;  // with fewer, anything can be explained
+// The largest error that estimated errors of a robot leave, m and as a share of its size.
 constexpr double kMostLeft = 0.02, kMostOfSize = 0.01;
-// What is left at most once a mistake is undone, of the placed nominal robot:
+// Largest share that is left with a mistake corrected, for the placed nominal robot:
 constexpr double kLeftOfMisfit = 0.7;
 constexpr double kLeftByOneOfSeveral = 0.9;
-constexpr double kMuchLess = 0.5;             // of what other mistakes leave
-constexpr double kLeftByToldPositions = 0.3;  // of one joint, told by the markers
+constexpr double kMuchLess = 0.5;             // share of what other mistakes leave
+constexpr double kLeftByToldPositions = 0.3;  // for the positions of one joint by the markers
 constexpr double kUntold = std::numeric_limits<double>::infinity();
-constexpr double kLeftWhereNoRobot = 0.5;  // where the offsets with the mistake are no robot's
-// ... and of the robot with joint offsets:
+constexpr double kLeftWhereNoRobot = 0.5;  // where the offsets with the mistake are impossible
+// ... and for the robot with joint offsets:
 constexpr double kLeftOfOffsets = 0.5;
-constexpr double kLeftByNoRobot = 0.98;  // where neither the offsets with nor without it are one's
-constexpr double kNoWorseThanNoRobot = 1.1;  // where those without it are
-// A root that moved:
-constexpr double kFarFromRobot = 0.05;  // m: beyond what a fit leaves that has not come to rest
+constexpr double kLeftByNoRobot = 0.98;      // where those with and without it are impossible
+constexpr double kNoWorseThanNoRobot = 1.1;  // where only those without it are possible
+// For a root link that moved:
+constexpr double kFarFromRobot = 0.05;  // m: beyond the error of a fit that has not converged
 constexpr double kLeftOfGeometry = 0.3;
-constexpr int kFewestBodies = 2;  // that show whether it stands elsewhere
+constexpr int kFewestBodies = 2;  // bodies that show whether it moved
 constexpr int kEnoughPostures = 500;
 
-/// A robot and what was recorded of it, once a mistake is undone.
+/// A robot and its recording, with a mistake corrected.
 struct Alternative {
-  std::string what;  ///< the mistake, in words
-  std::string name;  ///< what `--accept` calls it; empty: it is in the project
+  std::string what;  ///< the mistake as text
+  std::string name;  ///< name for `--accept`; empty: the mistake is in the project
   ErrorModel model;
   Recording recording;
 };
@@ -84,7 +84,7 @@ std::string Describe(const MovedFrame& moved) {
       1e3 * moved.displaced);
 }
 
-/// With so many of the postures, evenly, that more would tell nothing new of the root link.
+/// The same with fewer postures, evenly chosen, which determine the root link well enough.
 Alternative Thinned(Alternative robot) {
   const int count = robot.recording.posture_count();
   if (count <= kEnoughPostures) return robot;
@@ -106,15 +106,15 @@ std::optional<CalibrationResult> Fit(const Alternative& robot, ModelKind kind,
   }
 }
 
-/// rms distance of the markers from a robot of which so much is estimated, whatever that is, m. The
-/// offsets of joints may be so large that the nominal robot is better with a mistake than without.
+/// Root mean square distance of the markers from the calibrated robot, m, however large its errors
+/// are. Where offsets are large, the nominal robot may fit better with a mistake than without.
 double ErrorOf(const Alternative& robot, ModelKind kind, const Project& project) {
   const auto result = Fit(robot, kind, project);
   return result ? MarkerError(*result, robot.recording, project.calibration)
                 : std::numeric_limits<double>::infinity();
 }
 
-/// Looks for what the placed nominal robot shows, and a robot with joint offsets confirms.
+/// Search for mistakes that the placed nominal robot shows and a robot with joint offsets confirms.
 class PlainSearch {
  public:
   PlainSearch(const Project& project, const Recording& recording)
@@ -123,7 +123,7 @@ class PlainSearch {
         misfit_(MisfitOf(given_.model, recording)),
         least_(std::min(kMostLeft, kMostOfSize * RobotSize(project.tree))) {}
 
-  /// Mistakes, each beside those before it; empty: none.
+  /// Returns the mistakes, each found beside those before it; empty: none.
   std::vector<Alternative> Run() {
     if (std::vector<Alternative> turned = FindTurned(); !turned.empty()) return turned;
     for (const auto& search : {&PlainSearch::FindInTableOrZero, &PlainSearch::FindExchange,
@@ -138,7 +138,7 @@ class PlainSearch {
   }
 
  private:
-  /// Half a turn of a joint may look like the sign of another one, which leaves more.
+  /// Takes what leaves less: half a turn of a joint may look like the sign of another one.
   std::vector<Alternative> FindInTableOrZero() const {
     std::vector<Alternative> in_table = FindInTable(), zero = FindOtherZero();
     if (in_table.empty() || zero.empty()) return zero.empty() ? in_table : zero;
@@ -160,7 +160,7 @@ class PlainSearch {
       return all;
     };
     std::vector<Alternative> found;
-    std::size_t told = 0;  // the last one that explains most of what is left
+    std::size_t told = 0;  // the last mistake that explains most of what the ones before it leave
     for (RecordingMistake& one :
          FindMistakesBy(project_, given_.recording, misfit_, misfit, signs, kLeftByOneOfSeveral)) {
       found.push_back({one.what, one.name, given_.model, std::move(one.corrected)});
@@ -209,8 +209,8 @@ class PlainSearch {
     return found;
   }
 
-  /// A joint that moved, and whose column says the same in all rows: the markers tell where it was.
-  /// That explains a part of any mistake, so it has to explain most.
+  /// Finds a joint that moved although its column is the same in all rows; the markers show its
+  /// positions. Since they explain a part of any mistake, they must explain most of the misfit.
   std::vector<Alternative> FindLostColumn() const {
     if (given_.recording.free_root || misfit_ < least_) return {};
     const RobotTree& tree = project_.tree;
@@ -232,7 +232,7 @@ class PlainSearch {
     return found;
   }
 
-  /// A joint whose positions are logged within half a turn, though it turns further.
+  /// Finds a joint whose positions are logged within half a turn although it turns further.
   std::vector<Alternative> FindHalfTurn() const {
     std::vector<Alternative> found;
     double least = kLeftOfMisfit * misfit_;
@@ -265,7 +265,7 @@ class PlainSearch {
     return BestOf(OtherColumns(given_.recording, project_.tree, given_.model.active_joints));
   }
 
-  /// The one that explains most, if it explains enough.
+  /// The alternative that explains most, if it explains enough.
   std::vector<Alternative> BestOf(std::vector<LogAlternative> others) const {
     std::vector<Alternative> found;
     double least = kLeftOfMisfit * misfit_;
@@ -278,7 +278,7 @@ class PlainSearch {
     return found;
   }
 
-  /// Mistakes that offsets explain which no robot has: they hardly show in how far the markers are.
+  /// Finds mistakes that impossible offsets explain, which distances of markers hardly show.
   std::vector<Alternative> FindTurned() const {
     std::vector<Alternative> found;
     OffsetsFit fit = FitOffsetsOf(given_);
@@ -308,7 +308,7 @@ class PlainSearch {
     return found;
   }
 
-  /// Mistakes in a part of the table.
+  /// Finds mistakes in a part of the table.
   std::vector<Alternative> FindOdd() const {
     std::vector<Alternative> found;
     for (OddPostures& one : FindOddPostures(given_.model, given_.recording,
@@ -318,8 +318,8 @@ class PlainSearch {
     return found;
   }
 
-  /// A root link that was taken to stand still, and does not. In each posture, its pose explains
-  /// errors of the robot as well: all of them are estimated before it is said to move.
+  /// Finds a root link that moves although it should stand still. In each posture its pose also
+  /// explains errors of the robot; these are therefore all estimated first.
   std::vector<Alternative> FindMovedRoot() const {
     if (given_.recording.free_root) return {};
     std::set<int> bodies;
@@ -346,7 +346,7 @@ class PlainSearch {
     return FitOffsets(project_, of.model, of.recording);
   }
 
-  /// All of them, with the evidence, unless offsets of joints explain them.
+  /// Returns all of them with their evidence, unless joint offsets explain them.
   std::vector<Alternative> Confirmed(std::vector<Alternative> steps) const {
     if (steps.empty()) return {};
     const double left = LeftOf(steps);
@@ -354,14 +354,14 @@ class PlainSearch {
     return ConfirmedByOffsets(std::move(steps), left);
   }
 
-  /// The same by the offsets alone: the typical distance says little of a part of the table.
+  /// The same by the offsets alone: the typical distance tells little about a part of the table.
   std::vector<Alternative> ConfirmedByOffsets(std::vector<Alternative> steps,
                                               double left = kUntold) const {
     if (steps.empty()) return {};
     const OffsetsFit with = FitOffsetsOf(given_), without = FitOffsetsOf(steps.back());
     if (!std::isfinite(with.error) || !(without.error < kMostLeft)) return {};
-    // Offsets of half a turn, and zeros of motors, explain much or all, with values that no robot
-    // has.
+    // Offsets of half a turn, and zeros of motors, explain much or all with values that are
+    // impossible for a robot.
     const bool no_robot = !with.robot && left < kLeftWhereNoRobot * misfit_;
     double most = no_robot ? kLeftByNoRobot : kLeftOfOffsets;
     if (no_robot && without.robot) most = kNoWorseThanNoRobot;
@@ -377,8 +377,8 @@ class PlainSearch {
 
   const Project& project_;
   Alternative given_;
-  double misfit_;  ///< m
-  double least_;   ///< misfit of a mistake that is looked for, m
+  double misfit_;  ///< PlacedMisfit, m
+  double least_;   ///< largest misfit that a mistake may leave, m
 };
 
 }  // namespace

@@ -9,19 +9,26 @@
 
 namespace elastocal {
 
-/// Mistakes in a posture table or its project that the nominal robot shows before anything is
-/// estimated, in words with what corrects them; empty where it shows none, for trials, and for
-/// fewer than eight postures. Each is undone, and is a mistake if less than 0.7 of PlacedMisfit is
-/// left, and of the error of a robot whose joint offsets are estimated less than a half and 20 mm.
-/// (Where those offsets are such as no robot has, they explain much by themselves: then less than a
-/// half of PlacedMisfit, and of the error no more.) Tried are: offsets that no robot has
-/// (FindTurnedZeros); the sign of each joint or motor, labels exchanged, rows shifted
-/// (RecordingMistake), or another zero of a joint (OtherZeros); then two joints or motors
-/// exchanged; then couplings and mimic joints of the opposite sign or that do not follow
-/// (OtherFollowers); then all signs of a limb, or the columns of two limbs (WholeLimbs); then a
-/// joint's column that is the same in all rows, which the markers contradict; then a root link that
-/// stands elsewhere in each posture, for which all geometric errors are estimated. First of all, a
-/// frame of the markers that lies elsewhere from some posture on (FindMovedFrame).
+/// Finds mistakes in a posture table or its project that the nominal robot shows before anything is
+/// estimated. Returns sentences with the correction; empty where there are none, for trials, and
+/// for fewer than eight postures.
+///
+/// Each candidate is corrected. It is a mistake if less than 0.7 of PlacedMisfit is left, and if
+/// the error of a robot whose joint offsets are estimated falls to less than a half and below 20
+/// mm. (If these offsets are impossible for a robot, they explain much by themselves: then less
+/// than a half of PlacedMisfit must be left, and no larger error.) The following are tried, in this
+/// order:
+///
+/// - a frame of the markers that lies elsewhere from some posture on (FindMovedFrame);
+/// - offsets that no robot has (FindTurnedZeros);
+/// - the sign of each joint or motor, labels exchanged, rows shifted (RecordingMistake), or another
+///   zero of a joint (OtherZeros);
+/// - two joints or motors exchanged;
+/// - couplings and mimic joints with the opposite sign or without effect (OtherFollowers);
+/// - all signs of a limb, or the columns of two limbs (WholeLimbs);
+/// - a joint's column that is the same in all rows, which the markers contradict;
+/// - a root link that stands elsewhere in each posture, for which all geometric errors are
+///   estimated.
 std::vector<std::string> FindPlainMistakes(const Project& project, const Recording& recording);
 
 }  // namespace elastocal

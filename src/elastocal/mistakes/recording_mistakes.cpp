@@ -25,18 +25,18 @@ namespace elastocal {
 namespace {
 
 constexpr std::size_t kMostMistakes = 3;
-constexpr int kRoughUpdates = 20;         // of noise and prior, where a suspicion is tried
-constexpr std::size_t kMostTried = 3;     // of a kind, at a time
-constexpr std::size_t kMostUndone = 100;  // by AcceptMistakes, in a recording
-constexpr double kClearlyRight = 0.2;     // of the error is left: no other suspicion is tried
-constexpr std::size_t kManyLeftOut = 4;   // a quarter of the postures
+constexpr int kRoughUpdates = 20;         // updates of noise and prior where a suspicion is tried
+constexpr std::size_t kMostTried = 3;     // suspicions of one kind at a time
+constexpr std::size_t kMostUndone = 100;  // mistakes that AcceptMistakes corrects in a recording
+constexpr double kClearlyRight = 0.2;  // share of the error below which no other suspicion is tried
+constexpr std::size_t kManyLeftOut = 4;  // one in so many postures
 constexpr double kLeftByLeavingOut = 0.3;
-constexpr double kNoWorse = 1.2;       // of what is left without the postures
-constexpr double kLikeTheMost = 0.95;  // of the widest prior
-constexpr int kMostMoments = 120;      // of motions, by which a suspicion is tried first
+constexpr double kNoWorse = 1.2;       // ratio to the error without the postures
+constexpr double kLikeTheMost = 0.95;  // share of the widest prior
+constexpr int kMostMoments = 120;      // moments of motions by which a suspicion is tried first
 constexpr double kMostLeftByFew = 0.75;
 
-/// The signs of the joints that move in these postures, undone in all.
+/// Corrections of the sign, in all postures, of each joint that moves in these postures.
 std::vector<TriedCorrection> SignsIn(const std::vector<int>& postures, const RobotTree& tree,
                                      const Recording& recording) {
   std::vector<TriedCorrection> signs;
@@ -48,7 +48,7 @@ std::vector<TriedCorrection> SignsIn(const std::vector<int>& postures, const Rob
   return signs;
 }
 
-/// Mistakes in the log of a table of these names: the nominal robot does not show all of them.
+/// Mistakes with these names in a table, since the nominal robot does not show all of them.
 std::vector<TriedCorrection> NamedOfTable(const std::vector<std::string>& names,
                                           const Recording& recording, const RobotTree& tree) {
   std::vector<TriedCorrection> named;
@@ -59,10 +59,10 @@ std::vector<TriedCorrection> NamedOfTable(const std::vector<std::string>& names,
   return named;
 }
 
-/// What the user accepts is undone in the recordings that show it.
+/// Makes the corrections that the user accepts, in the recordings that show the mistakes.
 class Acceptance {
  public:
-  /// `told`: names that clocks of trials have shown.
+  /// `told` are names that the clocks of trials have shown.
   Acceptance(const Project& project, const std::vector<std::string>& names,
              const std::set<std::string>& told)
       : project_(project), names_(names), told_(told), shown_(told) {}
@@ -70,7 +70,7 @@ class Acceptance {
   void Undo(Recording& recording, std::vector<std::optional<Transform>>& truth) {
     if (recording.posture_count() == 0) return;
     const ErrorModel nominal = NominalModel(project_, recording);
-    std::set<std::string> done;  // as wholes: what is left of them was right
+    std::set<std::string> done;  // completely corrected: what is left of them was correct
     for (const std::string& name : told_) {
       if (UndoInTrials(nominal, name, recording)) done.insert(name);
     }
@@ -91,7 +91,8 @@ class Acceptance {
     }
   }
 
-  /// Names that the recordings have shown, or a table need not; what was undone, in words.
+  /// Names that the recordings have shown (a table need not show them), and descriptions of the
+  /// corrections.
   const std::set<std::string>& shown() const { return shown_; }
   const std::vector<std::string>& undone() const { return undone_; }
 
@@ -100,7 +101,7 @@ class Acceptance {
     return std::find(names_.begin(), names_.end(), name) != names_.end();
   }
 
-  /// What the recording shows of them, or else what a table does not show.
+  /// The next named mistake that the recording shows or, in a table, that it need not show.
   std::optional<TriedCorrection> Next(const ErrorModel& nominal, const Recording& recording,
                                       std::set<std::string>& done) {
     std::optional<TriedCorrection> next;
@@ -120,9 +121,9 @@ class Acceptance {
     return std::nullopt;
   }
 
-  /// Columns are assigned once, by the program that logs: a sign or exchange is undone in all
-  /// trials but those that show it then. Whether it was; not in a table, nor where rods would not
-  /// close.
+  /// Corrects a sign or an exchange in all trials but those that would then show it, because the
+  /// logging program assigns columns once. Returns whether it did; not in a table, nor where rods
+  /// would not close.
   bool UndoInTrials(const ErrorModel& nominal, const std::string& name, Recording& recording) {
     if (recording.trials.empty()) return false;
     Recording as_table = recording;
@@ -156,12 +157,12 @@ class Acceptance {
   const std::vector<std::string>& names_;
   std::set<std::string> told_;
   std::set<std::string> shown_;
-  std::set<std::string> named_;  // shown by no recording
+  std::set<std::string> named_;  // names that no recording shows
   std::vector<std::string> undone_;
 };
 
-/// Whether an estimate is beyond what an error of a robot can be, by an axis or by the width of the
-/// prior: axes turned by half a turn explain a reversed sign perfectly.
+/// Whether an estimate is impossible for a robot, by an axis or by the width of the prior: axes
+/// turned by half a turn explain a reversed sign perfectly.
 bool IsNoRobot(const CalibrationResult& result) {
   const PriorScale& scale = result.prior_scale;
   const auto at_most = [&](PriorGroup group) {
@@ -186,7 +187,7 @@ class Refitting {
       model_ = std::move(robot.model);
       base_ = std::move(robot.base);
     }
-    // What is right comes to rest soon; what is wrong may never.
+    // A correct recording comes to rest soon; a wrong one may never.
     CalibrationOptions roughly = project_.calibration;
     roughly.max_iterations = std::min(roughly.max_iterations, kRoughUpdates);
     try {
@@ -205,7 +206,7 @@ class Refitting {
   std::optional<BaseParameters> base_;
 };
 
-/// None where too much is left in the end.
+/// The mistakes; empty where too large an error is left in the end.
 std::vector<RecordingMistake> Explained(const RobotTree& tree,
                                         std::vector<RecordingMistake> mistakes) {
   if (!mistakes.empty() && mistakes.back().after > MostLeft(tree)) mistakes.clear();
@@ -250,12 +251,12 @@ std::vector<RecordingMistake> FindMistakesBy(
         AddUndone(one, project.tree, current, tried);
       }
     }
-    // A joint that rests while another limb is measured looks frozen where that limb is wrong.
+    // A joint that rests while another limb is measured looks frozen if that limb is wrong.
     std::stable_partition(tried.begin(), tried.end(),
                           [](const TriedCorrection& one) { return !one.only_leaves_out; });
     const TriedCorrection* best = nullptr;
     double least = left_of_error * error;
-    const auto try_one = [&](const TriedCorrection& one) {  // whether it is clearly right
+    const auto try_one = [&](const TriedCorrection& one) {  // returns whether it is clearly right
       const double left = error_of(one.corrected);
       if (!(left < least)) return false;
       if (one.only_leaves_out && left > kLeftByLeavingOut * error) return false;
@@ -265,7 +266,7 @@ std::vector<RecordingMistake> FindMistakesBy(
     };
     bool clear = false;
     for (const TriedCorrection& one : tried) {
-      // The same in other trials may be better still.
+      // The same mistake in other trials may be better still.
       if (clear && (one.name.empty() || one.name != best->name)) break;
       if (one.only_leaves_out && best != nullptr && least < most_left) break;
       clear = try_one(one) || clear;
@@ -296,7 +297,7 @@ std::vector<RecordingMistake> FindMistakesBy(
     double error, const std::function<double(const RecordedModel&, const Recording&)>& error_of) {
   std::optional<RecordedModel> robot;  // made when there is a suspicion
   const Recording& recorded = as_recorded.calibration;
-  // A fit to a wrong recording hardly comes to rest: minutes, where there are thousands of moments.
+  // A fit to a wrong recording hardly comes to rest, which takes minutes with thousands of moments.
   const auto hardly_helps = [&](const Recording& corrected) {
     const std::vector<int> few = FewPostures(recorded, corrected, kMostMoments);
     return !few.empty() && error_of(*robot, SelectPostures(corrected, few)) >
@@ -324,7 +325,7 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
                                                     const Recording& fitted,
                                                     const CalibrationResult& result) {
   Refitting refitting(project, seed, measured);
-  // Once one mistake is undone, what remains is not worth a fit for each joint.
+  // Once a mistake is corrected, the rest does not justify a fit for each joint.
   bool unexplained = result.marker_sd > project.calibration.plausible_marker_sd;
   const auto signs = [&](const Recording& recording, double error) {
     std::vector<LogSuspicion> suspected;
@@ -336,8 +337,8 @@ std::vector<RecordingMistake> FindRecordingMistakes(const Project& project,
     return suspected;
   };
   double error = FitError(result, fitted, project.calibration);
-  // Where clusters were taken as two that were not knocked, a fit may explain nothing that explains
-  // much with each as one: a mistake must leave less than that.
+  // Where clusters were split that were not knocked, a fit may explain nothing that explains much
+  // with whole clusters. A mistake must then leave less than that.
   const bool in_sets = fitted.marker_count() != measured.calibration.marker_count();
   if (in_sets && !(error < MostLeft(project.tree))) {
     error = std::min(error, refitting.Error(measured.calibration));
@@ -353,7 +354,7 @@ std::vector<std::string> AcceptMistakes(const Project& project,
                                         const std::vector<std::string>& accepted,
                                         Measurements& measured) {
   std::vector<std::string> undone;
-  std::vector<std::string> names;  // of mistakes that the recording must show
+  std::vector<std::string> names;  // names of mistakes that the recording must show
   std::vector<StatedCorrection> stated;
   for (const std::string& name : accepted) {
     if (const auto one = ParseStatedCorrection(name, project.tree)) {

@@ -18,8 +18,8 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeftByMarkers = 1.5;  // of the error of the fits apart
-constexpr double kFarAbove = 3.0;       // times what the cameras displace markers by
+constexpr double kLeftByMarkers = 1.5;  // ratio to the error of the separate fits
+constexpr double kFarAbove = 3.0;       // ratio to the noise of the cameras
 constexpr double kUsualNoise = 0.2e-3;  // m, of a coordinate (paper section 1)
 
 std::vector<PartOfRecording> FoldersOf(const Recording& recording) {
@@ -35,15 +35,15 @@ std::vector<PartOfRecording> FoldersOf(const Recording& recording) {
   return folders;
 }
 
-/// Distance by which the cameras displace a marker, rms of the best group, m, but no more than that
-/// of usual cameras: what contradicts itself passes for noise.
+/// Noise of the cameras as rms displacement of a marker, in the best group, m; at most that of
+/// usual cameras, because contradictions look like noise.
 double ScatterOfMarkers(const Noise& noise) {
   const double sd = noise.sd.col(static_cast<int>(NoiseSource::kMarker)).minCoeff();
   return std::sqrt(3.0) * std::min(sd, kUsualNoise);
 }
 
-/// Gives what the folder shows of each marker, as far as others show it too, to a marker of its
-/// own.
+/// Moves the observations of each marker in the folder to a new marker, where other folders show
+/// that marker, too.
 void GiveOwnMarkers(const PartOfRecording& folder, ErrorModel& model, Recording& recording) {
   std::vector<char> there(Size(recording.posture_count()), 0);
   for (const int i : folder.postures) there[Size(i)] = 1;
@@ -61,7 +61,8 @@ void GiveOwnMarkers(const PartOfRecording& folder, ErrorModel& model, Recording&
   SplitMarkersOf(markers, names, there, model, recording);
 }
 
-/// rms distance of the markers from one robot whose markers are elsewhere in each folder, m.
+/// Root mean square distance of the markers from one robot whose markers have other positions in
+/// each folder, m.
 double ErrorWithOwnMarkers(const Project& project, const CalibrationResult& together,
                            Recording recording, const std::vector<PartOfRecording>& folders) {
   ErrorModel model = together.model;
@@ -70,7 +71,7 @@ double ErrorWithOwnMarkers(const Project& project, const CalibrationResult& toge
     const BaseParameters base = FindBaseOf(project, model, recording);
     return FitError(Calibrate(model, recording, base, together.kind, project.calibration),
                     recording, project.calibration);
-  } catch (const InputError&) {  // so many markers, so few equations
+  } catch (const InputError&) {  // too many markers for the equations
     return std::numeric_limits<double>::infinity();
   }
 }

@@ -10,21 +10,21 @@
 
 namespace elastocal {
 
-/// Whether a fit that leaves this error of the markers, m, leaves so much more than cameras
-/// displace markers by (three times) that it is worth looking for why.
+/// Whether the error of the markers in a fit, m, is so much larger (three times) than the noise of
+/// the cameras that its cause should be sought.
 bool LeavesMoreThanCameras(const CalibrationResult& result, double left);
 
-/// Recordings that no one robot explains; nothing where one does, and for tables.
+/// Finds recordings that no single robot explains; nothing where one does, and for tables.
 ///
-/// **Folders** that were given together. Each is fitted by itself. They are apart if that leaves
-/// less than half of the error of `together` (rms distance of the markers), and 0.2 mm less. Then
-/// one robot whose markers are all elsewhere in each folder is fitted as well: where it leaves
-/// hardly more than the fits apart, markers were glued on anew between the folders; else the robots
-/// differ, or one robot was changed.
+/// **Folders** that were given together are fitted each by itself. They are apart if this leaves
+/// less than half of the error of `together` (rms distance of the markers), and at least 0.2 mm
+/// less. Then one robot whose markers are displaced in each folder is also fitted. If that leaves
+/// hardly more than the separate fits, markers were fixed anew between the folders; otherwise the
+/// robots differ, or one robot was changed.
 ///
 /// **Trials** of a folder: see FindTrialsApart.
 ///
-/// `recording`: that of `together`; `most`: what another explanation leaves, m.
+/// `recording` is that of `together`. `most` is the error that another explanation leaves, m.
 std::optional<PartsApart> FindRecordingsApart(const Project& project, const RecordedModel& robot,
                                               const Recording& recording,
                                               const CalibrationResult& together, double most);

@@ -14,7 +14,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeftWithoutLoose = 0.5;  // of the error of all other markers
+constexpr double kLeftWithoutLoose = 0.5;  // share of the error of all other markers
 
 Recording WithoutMarkers(const LabelCluster& cluster, Recording recording) {
   for (const int m : cluster.markers) recording.markers.middleCols<3>(3 * m).setConstant(kNaN);

@@ -10,10 +10,9 @@
 
 namespace elastocal {
 
-/// Markers that are so far off in each posture that nothing is worth calibrating by them
-/// (IsTooLoose), or that spoil what others tell: a fit without them leaves less than half of the
-/// error of all other markers (ErrorAlone: no freedom of that fit is taken for its precision). In
-/// words; empty: none.
+/// Describes clusters that are so far off in each posture that no calibration by them is worthwhile
+/// (IsTooLoose), or that spoil the others: a fit without them leaves less than half of the error of
+/// all other markers (ErrorAlone, which corrects for the freedom of that fit). Empty: none.
 std::vector<std::string> FindSpoilingCluster(const Project& project, const RecordedModel& robot,
                                              const Recording& recording,
                                              const CalibrationResult& result);

@@ -22,14 +22,14 @@ namespace {
 constexpr double kLeastFactor = 0.5, kLargestFactor = 2.0;
 constexpr double kLargestOffsetDeg = 60.0, kLargestOffsetMm = 200.0;
 
-/// Of an offset in files.
+/// Unit of an offset in files.
 double UnitOf(const LoggedPosition& logged) { return logged.slides ? 1e-3 : M_PI / 180.0; }
 
 [[noreturn]] void Refuse(const std::string& name, const std::string& why) {
   throw InputError("--accept " + name + ": " + why);
 }
 
-/// Linkage and entry (LoggedPositionOf) of a joint or motor that `--accept` names.
+/// Linkage and entry (LoggedPositionOf) of a joint or motor named in `--accept`.
 std::pair<int, int> FindLogged(const std::string& name, const std::string& of,
                                const RobotTree& tree) {
   const MotorIndex motor = FindMotor(tree, of);
@@ -46,10 +46,10 @@ void CheckSize(const std::string& name, double size, double least, double larges
   Refuse(name, fmt::format("a size from {:g} to {:g}{} was expected", least, largest, unit));
 }
 
-/// Undoes it in one recording; whether the recording has the trial.
+/// Makes the correction in one recording; returns whether the recording has the trial.
 bool ApplyTo(const StatedCorrection& correction, const RobotTree& tree, Recording& recording) {
   bool found = correction.trial.empty(), reached = false;
-  int number = 0;  // of the posture in the trial
+  int number = 0;  // number of the posture in the trial
   for (int i = 0; i < recording.posture_count(); ++i) {
     const bool here =
         correction.trial.empty() ||
@@ -93,7 +93,7 @@ bool ApplyTo(const StatedCorrection& correction, const RobotTree& tree, Recordin
   return found;
 }
 
-/// Takes ":4" from the end of what names a trial, or a joint in a table.
+/// Removes ":4" from the end of the name of a trial, or of a joint in a table.
 void ReadFirstPosture(const std::string& name, std::string& of, StatedCorrection& correction) {
   const std::size_t colon = of.rfind(':');
   if (colon == std::string::npos) return;
@@ -106,7 +106,7 @@ void ReadFirstPosture(const std::string& name, std::string& of, StatedCorrection
   of.resize(colon);
 }
 
-/// The names that undo an offset in all trials from a posture on.
+/// The names that correct an offset in all trials from a posture on.
 std::string NamesFromPosture(const RecordingFault& fault, const LoggedPosition& logged,
                              const Recording& recording) {
   const auto trial_of = [&](int posture) {
@@ -147,7 +147,7 @@ std::string InWords(const StatedCorrection& correction, const RobotTree& tree) {
                      where, from);
 }
 
-/// Names of the markers that a joint moves against the root link.
+/// Names of the markers that a joint moves relative to the root link.
 std::set<std::string> MarkersBeyond(const Project& project, int coordinate) {
   const RobotTree& tree = project.tree;
   std::set<std::string> beyond;
@@ -170,7 +170,7 @@ bool SeesAny(const Recording& recording, int posture, const std::set<std::string
   return false;
 }
 
-/// Names of the trials that move a joint while a marker is seen that it moves.
+/// Names of the trials that move a joint while a marker that it moves is seen.
 std::vector<std::string> TrialsThatShow(const Recording& recording, int coordinate,
                                         const std::set<std::string>& markers) {
   std::vector<int> seen;
@@ -184,7 +184,7 @@ std::vector<std::string> TrialsThatShow(const Recording& recording, int coordina
   return names;
 }
 
-/// Empty where a trial shows the joint as the estimate has it.
+/// Empty where a trial shows the joint in the state of the estimate.
 std::string DescribeUnconfirmed(const StatedCorrection& correction,
                                 const std::vector<StatedCorrection>& all, const Project& project,
                                 const Measurements& measured) {

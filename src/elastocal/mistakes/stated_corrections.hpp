@@ -13,7 +13,7 @@
 
 namespace elastocal {
 
-/// A correction of a recording that says its own size, for `--accept` (JOINT: or a motor of rods):
+/// A correction of a recording with its own size, for `--accept` (JOINT may be a motor of rods):
 ///
 ///     gain:JOINT=1.05          the joint's positions are 1.05 times the true ones, in all trials
 ///     gain:JOINT@TRIAL=1.05    in this trial alone
@@ -24,40 +24,41 @@ namespace elastocal {
 ///     scale=1.005              ... in all trials
 struct StatedCorrection {
   FaultKind kind = FaultKind::kJointGain;
-  int coordinate = -1;     ///< of the robot tree; of a scale: -1
-  int linkage = -1;        ///< of the tree: `coordinate` is a motor of it; -1: of q
-  std::string joint = {};  ///< of a scale: empty
+  int coordinate = -1;  ///< coordinate in the robot tree; -1 for a scale
+  /// Linkage of the tree of which `coordinate` is a motor; -1: it is an entry of q.
+  int linkage = -1;
+  std::string joint = {};  ///< empty for a scale
   std::string trial = {};  ///< empty: all
-  int from = 1;            ///< the first posture of the trial that has it, from 1
+  int from = 1;            ///< the first posture of the trial with the fault, from 1
   double size = 1.0;       ///< gain or scale; offset in rad or m
 };
 
 /// Reads such a name; nothing where it begins with another word. Throws InputError where joint or
-/// size are missing, unknown, or beyond what can be a fault (gain and scale from 0.5 to 2; offset
-/// 60 deg, 200 mm).
+/// size are missing, unknown, or larger than any fault (gain and scale from 0.5 to 2; offset 60
+/// deg, 200 mm).
 std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
                                                       const RobotTree& tree);
 
-/// The names that correct a fault, joined by spaces. An offset from a posture on has one for each
-/// trial of this recording from there on; on which side a trial for validation stands, only its
-/// user knows. Nothing where no name does it.
+/// The names that correct a fault, joined by spaces. An offset from a posture on needs one for each
+/// trial of this recording from there on; only the user knows on which side a trial for validation
+/// is. Nothing where no name corrects the fault.
 std::optional<std::string> NameOfCorrection(const RecordingFault& fault, const RobotTree& tree,
                                             const Recording& recording);
 
-/// Undoes it in the trials for calibration and for validation; what was undone, in words. Throws
-/// InputError for a trial that is in neither.
+/// Makes the correction in the trials for calibration and for validation, and returns its
+/// description. Throws InputError for a trial that is in neither.
 std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree& tree,
                             Measurements& measured);
 
-/// Throws the InputError of a name without a size that corrects nothing: what can be accepted, or
-/// what the recording does show (`shown`).
+/// Throws InputError for a name without a size that corrects nothing. The message lists what can be
+/// accepted, or what the recording shows (`shown`).
 [[noreturn]] void RefuseAccepted(const std::string& name, const std::set<std::string>& shown);
 
-/// An objection for each joint of which an offset or gain is accepted in all trials for validation
+/// An objection for each joint for which an offset or gain is accepted in all trials for validation
 /// that show it (it moves, and a marker that it carries is seen), and in none of those of the
-/// estimate that do: the log had one state in these and another one in those, and no trial shows
-/// that the robot is now in that of the estimate. `names` of `--accept`; others than those with a
-/// size say nothing here.
+/// estimate that show it. The log then had different states in the two, and no trial shows that the
+/// robot is now in the state of the estimate. `names` are those of `--accept`; names without a size
+/// are ignored.
 std::vector<std::string> UnconfirmedCorrections(const std::vector<std::string>& names,
                                                 const Project& project,
                                                 const Measurements& measured);

@@ -11,13 +11,13 @@ namespace elastocal {
 /// The suspicion that the sign of a coordinate is reversed in all postures.
 LogSuspicion SignOf(int coordinate, const Recording& recording);
 
-/// Those of all joints that move: where nothing explains a recording, none is beyond suspicion.
-/// None of a robot with many joints, each of which takes a fit of seconds.
+/// The reversed signs of all joints that move: where nothing explains a recording, each is
+/// suspected. Empty for a robot with many joints, since each takes a fit of seconds.
 std::vector<LogSuspicion> AllSigns(const RobotTree& tree, const Recording& recording);
 
-/// Suspect signs of a fit whose axes are turned by more than a right angle: of each such joint and
-/// of the one before it, which may be the one that is turned in truth, even where the nominal robot
-/// does not show it.
+/// The reversed signs suspected in a fit with axes that are turned by more than a right angle: of
+/// each such joint and of the one before it, which may be the true one, even where the nominal
+/// robot does not show it.
 std::vector<LogSuspicion> SignsOfTurnedAxes(const CalibrationResult& result,
                                             const Recording& recording);
 

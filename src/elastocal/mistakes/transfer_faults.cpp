@@ -27,16 +27,16 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeftOfRatio = 0.5;   // of the largest ratio
-constexpr int kMomentsToSearch = 120;  // of motions
-constexpr double kAsMuch = 1.1;        // times the error that an offset in one trial leaves
+constexpr double kLeftOfRatio = 0.5;   // share of the largest ratio
+constexpr int kMomentsToSearch = 120;  // moments of motions
+constexpr double kAsMuch = 1.1;        // ratio to the error that an offset in one trial leaves
 constexpr const char* kContradiction = "calibration and recording contradict each other: ";
 
-/// A cluster in a trial, or in a table.
+/// Error of a cluster in a trial, or in a table.
 struct ClusterError {
   std::size_t cluster = 0;
   int trial = 0;
-  double ratio = 0.0;  ///< rms distance of its markers over what is expected
+  double ratio = 0.0;  ///< ratio of the rms distance of its markers to the expected one
 };
 
 /// The search of FindTransferFaults.
@@ -92,7 +92,7 @@ class TransferSearch {
     return Predict(result.model, result.delta, recording, options()).distances.array().square();
   }
 
-  /// The root of the mean of the squares of a cluster in a trial; 0 where it is not seen.
+  /// Root mean square distance of a cluster's markers in a trial; 0 where it is not seen.
   double RmsOf(const Eigen::ArrayXXd& squares, const LabelCluster& cluster, int trial) const {
     double sum = 0.0, count = 0.0;
     for (Eigen::Index i = 0; i < squares.rows(); ++i) {
@@ -128,8 +128,8 @@ class TransferSearch {
     return largest;
   }
 
-  /// What all postures show of a joint that is off, too: FindRecordingFaults takes such an offset
-  /// for an error of the robot, which is known here.
+  /// Finds offsets of joints in all postures. FindRecordingFaults takes such an offset for an error
+  /// of the robot, but here the robot's errors are known.
   std::vector<RecordingFault> OffsetsInAll() const {
     std::vector<RecordingFault> offsets;
     const RobotTree& tree = of_.robot.model.tree;
@@ -149,7 +149,7 @@ class TransferSearch {
     return offsets;
   }
 
-  /// Without these, is the calibration contradicted half as much?
+  /// Whether correcting these faults halves the contradiction to the calibration.
   bool Explain(const std::vector<RecordingFault>& faults) const {
     Recording without = of_.recording;
     for (const RecordingFault& one : faults) without = WithoutFault(without, one);
@@ -178,7 +178,7 @@ class TransferSearch {
     return {kContradiction + words.text + OrMovedSince(words.faults)};
   }
 
-  /// A joint that only these postures show may have moved since the calibration.
+  /// Adds that a joint which only these postures show may have moved since the calibration.
   std::string OrMovedSince(const std::vector<RecordingFault>& faults) const {
     std::vector<std::string> joints;
     for (const RecordingFault& one : faults) {
@@ -198,8 +198,8 @@ class TransferSearch {
         fmt::join(joints, ", "));
   }
 
-  /// In which trials a cluster is off, the worst first. If it is in all that show it, the worst
-  /// one: the refit has its markers in between.
+  /// The trials in which a cluster is off, the worst first. If these are all that show it, only the
+  /// worst one, because the refit puts its markers between the positions.
   std::vector<ClusterError> SuspectedTrials(std::size_t cluster) const {
     std::vector<ClusterError> trials;
     for (const ClusterError& one : errors_) {

@@ -22,18 +22,19 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeastTrialOffset = 0.25 * M_PI / 180.0, kLeastTrialShift = 1e-3;
-constexpr double kLeftByOffset = 0.5;    // of the squared distances
-constexpr double kLeftOfFit = 0.5;       // of the error of the fit
-constexpr std::size_t kMostOffsets = 4;  // that are undone and fitted
-constexpr int kMostOfMotions = 120;      // moments, of held-out trials
-constexpr double kWorse = 1.05;          // times the error on them: not by chance
+constexpr double kLeftByOffset = 0.5;    // share of the squared distances
+constexpr double kLeftOfFit = 0.5;       // share of the error of the fit
+constexpr std::size_t kMostOffsets = 4;  // number of offsets that are corrected and fitted
+constexpr int kMostOfMotions = 120;      // moments of held-out trials
+constexpr double kWorse = 1.05;          // ratio of the error on them beyond chance
 constexpr int kNewtonSteps = 2;
-constexpr double kLeastCurvature = 1e-12;  // of the squared distances
+constexpr double kLeastCurvature = 1e-12;  // share of the squared distances
 constexpr int kFewestOfTrial = 3;          // postures
 constexpr std::size_t kFewestTrials = 2;
-constexpr std::size_t kMostOfAny = 12;  // trials, in each of which every joint is measured
+// Largest number of trials in each of which every joint is measured.
+constexpr std::size_t kMostOfAny = 12;
 
-/// Of numbers by posture.
+/// Sums of numbers by posture, for each trial.
 Eigen::VectorXd SumsByTrial(const Eigen::VectorXd& by_posture, const Recording& recording) {
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(recording.trials.size()));
   for (int i = 0; i < recording.posture_count(); ++i) {
@@ -50,10 +51,11 @@ void Move(const Eigen::VectorXd& by_trial, int coordinate, Recording& recording)
 
 struct TrialOffset {
   RecordingFault fault;
-  double left = 0.0;  ///< sum of all squared distances, m^2
+  double left = 0.0;  ///< sum of all squared distances with the offset corrected, m^2
 };
 
-/// Of one joint, in each trial by itself. `by_posture`: squared distances as recorded, m^2.
+/// Adds the offset of one joint in each trial. `by_posture` holds the squared distances as
+/// recorded, m^2.
 void AddOffsets(const CalibrationResult& result, const Recording& recording,
                 const CalibrationOptions& options, Eigen::VectorXd by_posture, const Joint& joint,
                 std::vector<TrialOffset>& found) {
@@ -92,7 +94,7 @@ void AddOffsets(const CalibrationResult& result, const Recording& recording,
   }
 }
 
-/// Of no joint yet.
+/// The trials without an offset.
 std::vector<TrialOffset> OfEachTrial(const Recording& recording) {
   std::vector<TrialOffset> offsets;
   for (int trial = 0; trial < std::ssize(recording.trials); ++trial) {
@@ -105,8 +107,8 @@ std::vector<TrialOffset> OfEachTrial(const Recording& recording) {
   return offsets;
 }
 
-/// Of all joints in the trials of these, beside the errors of the robot, which take a part of each:
-/// the one that explains most first.
+/// Offsets of all joints in these trials, estimated beside the errors of the robot, which absorb a
+/// part of each: the one that explains most first.
 std::vector<RecordingFault> OffsetsBesideErrors(const CalibrationResult& result,
                                                 const Recording& recording,
                                                 const CalibrationOptions& options,
@@ -135,8 +137,8 @@ std::vector<RecordingFault> OffsetsBesideErrors(const CalibrationResult& result,
   return measured;
 }
 
-/// rms distance of the markers of held-out trials, waist and markers being fitted to them, m; none
-/// where there are too few for that.
+/// Root mean square distance of the markers of held-out trials after waist and markers are fitted
+/// to them, m; nothing where there are too few equations.
 std::optional<double> ErrorOnHeldOut(const CalibrationResult& result, const BaseParameters& base,
                                      const Recording& held_out, const CalibrationOptions& options) {
   Recording few = WithThinnedMotions(held_out, kMostOfMotions);
@@ -175,7 +177,7 @@ std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
   }
   std::stable_sort(offsets.begin(), offsets.end(),
                    [](const TrialOffset& a, const TrialOffset& b) { return a.left < b.left; });
-  std::optional<double> predicted;  // of the held-out trials, by the fit as it is
+  std::optional<double> predicted;  // error on the held-out trials with the fit as it is
   double least = kLeftOfFit * MarkerError(result, recording, options);
   std::optional<RecordingFault> found;
   const std::vector<RecordingFault> candidates =

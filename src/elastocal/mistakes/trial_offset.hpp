@@ -8,20 +8,23 @@
 
 namespace elastocal {
 
-/// The trials of FindTrialOffset: those in which one joint takes half of the squares, or all.
+/// Which trials FindTrialOffset examines: those in which one joint explains half of the squares, or
+/// all.
 enum class OffsetTrials { kFarOff, kAny };
 
-/// A joint that is off by a constant in one trial, where noise hides it from FindRecordingFaults: a
-/// leg that stands there is off by more than it gives way, and what ties the waist to its foot
-/// counts the less. Each joint is moved in each trial, by what brings the markers nearest to where
-/// the robot of `result` puts them. Where that is 0.25 degrees or 1 mm and more, and takes half of
-/// all squared distances, the offsets of all joints in that trial are estimated beside the errors
-/// of the robot, and the four that explain most are undone, one by one, and the robot fitted again.
-/// Nothing unless one leaves half of the error, and none without which held-out trials, which do
-/// not have it, are predicted worse: what explains the estimate's trials alone is something else
-/// that the model lacks. `held_out` may be empty. kAny: where trials contradict each other, a fit
-/// has spread the offset over all of them; the offsets of all joints in each trial are estimated,
-/// of 12 trials at the most.
+/// Finds a joint with a constant offset in one trial, where noise hides it from
+/// FindRecordingFaults: if a leg that stands in the trial has a larger offset than its deflection,
+/// the constraint between waist and foot counts less. Each joint is moved in each trial to where
+/// the markers are nearest to the predictions of `result`. If that is at least 0.25 degrees or 1 mm
+/// and removes half of all squared distances, the offsets of all joints in that trial are estimated
+/// beside the errors of the robot. The four that explain most are corrected one by one, and the
+/// robot is fitted again.
+///
+/// An offset is returned only if correcting it leaves less than half of the error, and if held-out
+/// trials, which do not have it, are not predicted worse: an offset that explains only the
+/// estimate's trials is due to something else that the model lacks. `held_out` may be empty. kAny
+/// is for trials that contradict each other, where a fit has distributed the offset over all of
+/// them: the offsets of all joints in each trial are estimated, for at most 12 trials.
 std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
                                               const BaseParameters& base,
                                               const Recording& recording,

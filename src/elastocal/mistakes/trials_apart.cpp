@@ -17,9 +17,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeftApart = 0.5;     // of the error of one robot
-constexpr double kLeastGain = 0.2e-3;  // m, of that error
-constexpr double kMostOfSet = 3.0;     // times the error of all apart
+constexpr double kLeftApart = 0.5;     // ratio to the error of one robot
+constexpr double kLeastGain = 0.2e-3;  // m, less than that error
+constexpr double kMostOfSet = 3.0;     // ratio to the error of separate robots
 constexpr std::size_t kMostTrials = 12;
 
 double CountSeen(const Recording& recording, const std::vector<int>& postures) {
@@ -39,11 +39,11 @@ std::vector<PartOfRecording> TrialsOf(const Recording& recording) {
   return trials;
 }
 
-/// By what a fit of so many parameters makes residuals smaller than errors are. Of a body its place
-/// and attitude are told in each posture, and of its markers no more can be fitted than these;
-/// infinite where the parameters are as many.
+/// Factor by which the error exceeds the residual, because the fit adapts parameters. A body tells
+/// six numbers in each posture (position and attitude), and its markers add at most six parameters.
+/// Infinite where there are as many parameters as numbers.
 double OfFreedom(const CalibrationResult& fit, const Recording& part) {
-  double rows = -6.0 * part.posture_count();  // the waist's
+  double rows = -6.0 * part.posture_count();  // six for the waist of each posture
   std::map<int, double> of_markers;           // by body
   for (const BodyObservation& body : SelectAll(fit.model, part).bodies) {
     const auto told = static_cast<double>(std::min<Eigen::Index>(6, body.size()));
@@ -60,13 +60,13 @@ double OfFreedom(const CalibrationResult& fit, const Recording& part) {
                        : std::numeric_limits<double>::infinity();
 }
 
-/// A set of trials, and the rms distance of their markers from one robot, m.
+/// A set of trials, and the rms distance of their markers from one robot fitted to them, m.
 struct OneRobot {
   std::vector<PartOfRecording> trials;
   double error = 0.0;
 };
 
-/// Trials by themselves and together.
+/// Fits of the trials, separately and together.
 class TrialsTogether {
  public:
   TrialsTogether(const RecordedModel& robot, const Recording& recording,
@@ -86,12 +86,12 @@ class TrialsTogether {
     apart_ = ErrorOverParts(recording, trials_, errors_);
   }
 
-  /// rms distance of the markers from one robot, and from a robot of its own for each trial, m.
+  /// Errors of the markers with one robot, and with a separate robot for each trial, rms, m.
   double left() const { return left_; }
   double apart() const { return apart_; }
 
-  /// Sets of trials that one robot explains, but for an error of `most`, m; each as large as the
-  /// order of the trials makes it. The largest first.
+  /// Sets of trials that one robot explains with an error below `most`, m. Each set takes all
+  /// trials that fit, in their order. The largest set comes first.
   std::vector<OneRobot> Sets(double most) const {
     std::vector<OneRobot> sets;
     std::vector<std::size_t> open(trials_.size());
@@ -142,7 +142,7 @@ class TrialsTogether {
   ModelKind kind_;
   const CalibrationOptions& options_;
   std::vector<PartOfRecording> trials_;
-  std::vector<double> errors_;  // of each by itself
+  std::vector<double> errors_;  // error of each trial by itself
   double left_ = 0.0, apart_ = 0.0;
 };
 

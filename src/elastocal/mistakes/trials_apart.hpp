@@ -10,40 +10,45 @@
 
 namespace elastocal {
 
-/// A part of a recording: a trial, or what is from one of the folders given.
+/// A part of a recording: a trial, or the postures from one of the given folders.
 struct PartOfRecording {
   std::string name;
   std::vector<int> postures;
 };
 
-/// Root mean square over the markers of all parts, of those of each part (`errors`), m.
+/// Combines the rms errors of several parts (`errors`, m) into the rms over all markers seen in
+/// these parts, m.
 double ErrorOverParts(const Recording& recording, const std::vector<PartOfRecording>& parts,
                       const std::vector<double>& errors);
 
-/// rms distance of the markers of a recording, of which this is a part, from a robot of its own, m,
-/// as large as it would be if the fit had no freedom; infinite where it has too few equations.
+/// Root mean square distance of the markers of a part of a recording from a robot that is fitted to
+/// it alone, m. It is corrected for the freedom of that fit. Infinite where the part has too few
+/// equations, or where the estimate is impossible for a robot (FitError).
 double ErrorAlone(const RecordedModel& robot, const Recording& part, ModelKind kind,
                   const CalibrationOptions& options);
 
-/// Parts of a recording that no one robot explains, in words, and the error that robots of their
-/// own leave, m.
+/// Parts of a recording that no single robot explains, in words, and the rms error that a separate
+/// robot for each leaves, m.
 struct PartsApart {
   std::string said;
   double error = 0.0;
 };
 
-/// Whether parts contradict each other: robots of their own leave less than half of the error that
-/// one robot leaves, and 0.2 mm less. Both m.
+/// Whether parts contradict each other: separate robots leave less than half of the error of one
+/// common robot, and at least 0.2 mm less. Both errors are rms, m.
 bool AreApart(double error_apart, double error_together);
 
-/// Trials that no one robot explains, in words; empty where one does. They contradict each other if
-/// robots of their own leave far less (AreApart). What a trial exercises and no model
-/// explains seldom fits alone; an error that is the same throughout a trial does. Sets of
-/// trials that one robot explains (what is left is nearer to the error of all apart than to that of
-/// all together, by their ratio, and no more than three times that of all apart) are put together
-/// trial by trial. Trials that have too few equations are not judged; nothing is where more than 12
-/// are. `recording`: that of `together`; `most`: what another explanation of the recording leaves,
-/// m.
+/// Finds trials that no single robot explains; nothing where one does. Trials contradict each other
+/// if a separate robot for each leaves far less error than one robot for all (AreApart). Effects
+/// that a trial exercises and no model describes seldom disappear in a separate fit, but an error
+/// that is constant throughout a trial does.
+///
+/// Trials that one robot explains are then collected into sets, trial by trial. The error of a set
+/// must be less than the geometric mean of the error with separate robots and that with one robot,
+/// and less than three times the former. Nothing is returned if all trials form one set. Trials
+/// with too few equations are left out. Recordings with more than 12 trials are not examined.
+/// `recording` is that of `together`. `most` is the error that another explanation of the recording
+/// leaves, m; where it is smaller, it replaces the error with one robot.
 std::optional<PartsApart> FindTrialsApart(const RecordedModel& robot, const Recording& recording,
                                           const CalibrationResult& together, double most,
                                           const CalibrationOptions& options);

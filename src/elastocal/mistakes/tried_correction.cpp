@@ -24,8 +24,8 @@ std::string NameOf(const LabelSuspicion& suspicion) {
   return "labels:" + std::min(suspicion.a, suspicion.b) + "," + std::max(suspicion.a, suspicion.b);
 }
 
-/// A sign that not all trials show. Columns are assigned once, so that it may be reversed in the
-/// others, too, where the joint hardly moves or moves about zero.
+/// Whether a sign is reversed in some trials but not shown by all. Columns are assigned once, so
+/// that it may also be reversed in the others, where the joint hardly moves or moves about zero.
 bool IsOfSomeTrials(const LogSuspicion& one, const Recording& recording) {
   return one.kind == LogContradiction::kSign && one.linkage < 0 && !recording.trials.empty() &&
          std::ssize(one.postures) < recording.posture_count();

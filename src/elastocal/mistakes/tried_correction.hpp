@@ -10,31 +10,31 @@
 
 namespace elastocal {
 
-/// A suspicion of any kind.
+/// A suspicion of any kind, with the corrected recording.
 struct TriedCorrection {
-  std::string name, what;  ///< no name: it is to be mended where it comes from
+  std::string name, what;  ///< an empty name: it has to be corrected at its source
   Recording corrected;
-  std::vector<int> left_out = {};  ///< postures that `corrected` is without, ascending
-  /// It takes postures out and corrects none: whatever is wrong with them is gone, too.
+  std::vector<int> left_out = {};  ///< postures that `corrected` lacks, ascending
+  /// It only leaves out postures and corrects none, so that anything wrong with them disappears.
   bool only_leaves_out = false;
 };
 
-/// No robot whose errors are estimated leaves more, m.
+/// Largest error that a robot with estimated errors leaves, m: 20 mm, or 0.8 % of RobotSize if that
+/// is less.
 double MostLeft(const RobotTree& tree);
 
 ErrorModel NominalModel(const Project& project, const Recording& recording);
 
 TriedCorrection Undone(const LogSuspicion& one, const RobotTree& tree, const Recording& recording);
 
-/// Adds it; not where rods would not close without it.
+/// Adds the correction to `tried`, unless rods would not close with it.
 void AddUndone(const LogSuspicion& one, const RobotTree& tree, const Recording& recording,
                std::vector<TriedCorrection>& tried);
 
 enum class SuspicionsOf { kAll, kNamed };
 
-/// What the nominal robot makes one suspect, with the recording that is left once it is undone; at
-/// most so many of labels and of the log. kNamed: without those that have no name, whose search
-/// takes longest.
+/// Suspicions by the nominal robot, each with the corrected recording; at most `most` of labels and
+/// `most` of the log. kNamed leaves out those without a name, whose search takes longest.
 std::vector<TriedCorrection> Suspicions(const Project& project, const ErrorModel& nominal,
                                         const Recording& recording, std::size_t most,
                                         SuspicionsOf which = SuspicionsOf::kAll);

@@ -15,9 +15,9 @@ namespace {
 constexpr std::size_t kFewestOfATable = 4;
 constexpr double kFurtherApart = 2.0;
 
-using Height = std::pair<double, int>;  // m, and the line of the file
+using Height = std::pair<double, int>;  // height, m, and line of the file
 
-/// The number of touches that lie on the lower table; 0: there is one table.
+/// The number of touches on the lower table; 0: there is one table.
 std::size_t CountLower(const std::vector<Height>& sorted) {
   std::size_t below = 0;
   double widest = 0.0;

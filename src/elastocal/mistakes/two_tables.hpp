@@ -8,9 +8,10 @@
 
 namespace elastocal {
 
-/// Plates that touch two tables of different heights in one file, a sentence each: by nominal
-/// kinematics, their touches lie at two heights that are further apart than twice what the touches
-/// of one are. A nominal robot errs by some millimetres, so tables that are as close are not told.
+/// Finds plates that touch two tables of different heights in one file; one sentence each. By
+/// nominal kinematics their touches lie at two heights whose distance is more than twice the
+/// scatter of one. A nominal robot errs by some millimetres, so that tables of more similar heights
+/// are not found.
 std::vector<std::string> FindTwoTables(const ObservedRobot& model,
                                        const Observations& observations);
 

@@ -21,20 +21,21 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeftByMotion = 0.5;  // of the error with the joint at rest
+constexpr double kLeftByMotion = 0.5;  // ratio to the error with the joint at rest
 constexpr double kElsewhere = M_PI / 180.0, kElsewhereSlide = 2e-3;
-constexpr double kFurthestTurn = M_PI, kFurthestSlide = 1.0;  // of a joint without limits
-constexpr int kPlaces = 72;                                   // of a joint, to begin with
-constexpr double kShareOfPlaces = 0.25;                       // of the distance of two of these
+constexpr double kFurthestTurn = M_PI, kFurthestSlide = 1.0;  // range of a joint without limits
+constexpr int kPlaces = 72;              // number of positions that are tried first
+constexpr double kShareOfPlaces = 0.25;  // share of the distance between two of these
 constexpr int kStepsToNearest = 3;
-constexpr double kShownCurvature = 0.01;  // of the largest: the joint is shown
-constexpr int kFits = 2;  // the first one has the markers where a joint at rest would
+// Share of the largest curvature from which the joint is shown.
+constexpr double kShownCurvature = 0.01;
+constexpr int kFits = 2;  // in the first one, the markers are those of a resting joint
 
 bool Slides(const RobotTree& tree, int coordinate) {
   return JointOfCoordinate(tree, coordinate).type == JointType::kPrismatic;
 }
 
-/// Coordinates that were not recorded and move what the model has.
+/// Coordinates that were not recorded and move a part of the model.
 std::vector<int> NotRecorded(const ErrorModel& model, const Recording& recording) {
   std::vector<int> coordinates;
   for (int c = 0; c < model.tree.coordinate_count(); ++c) {
@@ -48,7 +49,7 @@ std::vector<int> NotRecorded(const ErrorModel& model, const Recording& recording
   return coordinates;
 }
 
-/// Positions of a coordinate over all that its joint can do; empty where that is nothing.
+/// Positions of a coordinate over the range of its joint; empty where the range is zero.
 Eigen::VectorXd Places(const RobotTree& tree, int coordinate) {
   const JointLimits& limits = JointOfCoordinate(tree, coordinate).limits;
   const double most = Slides(tree, coordinate) ? kFurthestSlide : kFurthestTurn;
@@ -57,7 +58,7 @@ Eigen::VectorXd Places(const RobotTree& tree, int coordinate) {
   return Eigen::VectorXd::LinSpaced(kPlaces, lower, upper);
 }
 
-/// The recording with the coordinate in each posture where it brings the markers nearest.
+/// The recording with the coordinate moved, in each posture, to where the markers are nearest.
 class NearestPositions {
  public:
   NearestPositions(const CalibrationResult& result, const Recording& recording, int coordinate,
@@ -87,7 +88,7 @@ class NearestPositions {
                                      .min(places[kPlaces - 1]);
       Take(tried);
     }
-    // What hardly changes tells the joint's loads, or noise.
+    // Where the squares hardly change, they only show the joint's loads, or noise.
     for (int i = 0; i < recording.posture_count(); ++i) {
       if (least_[i] < kLeftByMotion * given_[i]) continue;
       best_.q(i, coordinate_) = recording.q(i, coordinate_);
@@ -96,7 +97,7 @@ class NearestPositions {
   }
 
  private:
-  /// Positions that bring the markers of their posture nearer.
+  /// Takes the positions that bring the markers of their posture nearer.
   void Take(const Recording& tried) {
     const Eigen::VectorXd squares = SquaresByPosture(result_, tried, options_);
     for (int i = 0; i < tried.posture_count(); ++i) {
@@ -109,11 +110,11 @@ class NearestPositions {
   const CalibrationResult& result_;
   const CalibrationOptions& options_;
   int coordinate_;
-  Eigen::VectorXd given_, least_;  // by posture, m^2
+  Eigen::VectorXd given_, least_;  // squares by posture, m^2
   Recording best_;
 };
 
-/// A coordinate as the markers show it.
+/// Positions of a coordinate by the markers.
 struct ShownMotion {
   int coordinate = -1;
   Eigen::VectorXd q;  ///< by posture, rad or m
@@ -134,7 +135,7 @@ ShownMotion MotionOf(const RecordedModel& robot, const Recording& recording,
   return motion;
 }
 
-/// Postures in which the joint is elsewhere than usual.
+/// Postures in which the joint is not at its usual position.
 std::vector<int> Elsewhere(const ShownMotion& motion, bool slides) {
   const double usual = Median(motion.q);
   std::vector<int> postures;

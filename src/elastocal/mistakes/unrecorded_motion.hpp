@@ -9,13 +9,13 @@
 
 namespace elastocal {
 
-/// A joint that was not recorded, that the project has at one position in all postures, and that
-/// the markers show to move, in words; empty without one.
+/// Describes a joint that was not recorded and has one position in the project, although the
+/// markers show that it moves; empty if there is none.
 ///
-/// Each such joint is moved in each posture to where it brings the markers nearest, and the robot
-/// is fitted again. It is the joint that leaves least, if that is less than half of the error of
-/// `result` (rms distance of the markers), and if it is 1 degree (2 mm) and more from its usual
-/// position in some posture. `recording`: that of `result`.
+/// Each such joint is moved in each posture to where the markers are nearest, and the robot is
+/// fitted again. The joint that leaves the smallest error is named, if that is less than half of
+/// the error of `result` (rms distance of the markers), and if the joint is at least 1 degree (2
+/// mm) from its usual position in some posture. `recording` is that of `result`.
 std::string FindUnrecordedMotion(const Project& project, const RecordedModel& robot,
                                  const Recording& recording, const CalibrationResult& result);
 

@@ -19,17 +19,18 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeftOfStated = 0.6;  // at most, with another axis up
+constexpr double kLeftOfStated = 0.6;  // largest ratio to the error with the stated axis
 constexpr double kLeftOfRigid = 0.75;
-constexpr double kShareOfFound = 0.2;      // of what it explains is explained with the stated axis
-constexpr double kLeftOfCalibrated = 0.9;  // of what causes explain with the stated axis
-constexpr double kMostOfNoise = 30.0;  // of real arms 0.5 to 4 mm are left where cameras see 0.1
+constexpr double kShareOfFound = 0.2;      // largest share that is explained with the stated axis
+constexpr double kLeftOfCalibrated = 0.9;  // ratio to what causes leave with the stated axis
+constexpr double kMostOfNoise = 30.0;      // real arms leave 0.5 to 4 mm with cameras of 0.1 mm
 constexpr double kLikeNoise = 5.0;
-constexpr double kOfMedian = 1.4826;  // a normal deviation's sd over its median size
+// Ratio of a normal deviation's standard deviation to its median size.
+constexpr double kOfMedian = 1.4826;
 constexpr int kLeastRows = 10;
 constexpr int kMostRows = 60;
 
-/// Whether gravity alone tells the loads of the joints of a robot whose root link is held.
+/// Whether gravity alone determines the loads of the joints, for a robot whose root link is held.
 bool IsHeldByStatics(const Project& project, const Recording& recording) {
   const bool held = std::all_of(recording.trials.begin(), recording.trials.end(),
                                 [](const Trial& trial) { return trial.support.empty(); });
@@ -42,14 +43,14 @@ CalibrationResult FitOf(const RecordedModel& robot, const Recording& recording,
   return Calibrate(robot.model, recording, robot.base, ModelKinds(robot.model).back(), options);
 }
 
-/// rms distance of the markers from the robot that is calibrated from a recording, m.
+/// Root mean square distance of the markers from the robot that is calibrated from a recording, m.
 double ErrorOfFit(const RecordedModel& robot, const Recording& recording,
                   const CalibrationOptions& options) {
   return MarkerError(FitOf(robot, recording, options), recording, options);
 }
 
-/// rms distance of the markers by their noise alone, m, as the distances between two on one body
-/// tell, whatever the robot does; infinite without such a pair.
+/// Root mean square distance of the markers by their noise alone, m, from the distances between two
+/// markers on one body, whatever the robot does. Infinite without such a pair.
 double NoiseByDistances(const ErrorModel& model, const Recording& recording) {
   const auto body = [&](int m) { return model.tree.links[Size(model.markers[Size(m)].link)].body; };
   std::vector<double> noises;
@@ -65,7 +66,7 @@ double NoiseByDistances(const ErrorModel& model, const Recording& recording) {
       if (distances.size() < Size(kLeastRows)) continue;
       const double usual = Median(distances);
       for (double& distance : distances) distance = std::abs(distance - usual);
-      // Both ends are noisy; the distance of a marker from its model has three coordinates.
+      // Both ends are noisy; the distance of a marker from the model has three coordinates.
       noises.push_back(kOfMedian * std::sqrt(3.0 / 2.0) * Median(distances));
     }
   }
@@ -73,8 +74,8 @@ double NoiseByDistances(const ErrorModel& model, const Recording& recording) {
   return Median(noises);
 }
 
-/// Whether springs explain much with that axis up, as good as nothing with the stated one, and
-/// more than all that was found with the stated one: where noise is most of both errors.
+/// Whether springs explain much with the found axis up, hardly anything with the stated one, and
+/// more than everything found with the stated axis. This works where noise is most of both errors.
 bool OnlyItExplains(const UpByLoads& found, double rigid, double calibrated, double noise) {
   const double by_found = rigid * rigid - found.found * found.found;
   const double by_stated = rigid * rigid - found.stated * found.stated;
@@ -82,9 +83,9 @@ bool OnlyItExplains(const UpByLoads& found, double rigid, double calibrated, dou
          found.found < kLeftOfCalibrated * calibrated && found.found < kLikeNoise * noise;
 }
 
-/// Whether with that axis up nothing but the noise of the markers is left, and with the stated one,
-/// with all that was found, so much more that chance does not do it, of this many coordinates: of
-/// robots that hardly give way, gravity explains little, but nothing else is left.
+/// Whether the found axis leaves only the noise of the markers, and the stated axis, with
+/// everything that was found, more than chance allows for `coordinates` numbers. On robots that
+/// hardly deflect, gravity explains little, but then nothing else is left.
 bool LeavesOnlyNoise(const UpByLoads& found, double calibrated, double coordinates, double noise) {
   constexpr double kClearlyMore = 1.1, kLeastLogRatio = 20.0;
   const double ratio = std::min(found.stated, calibrated) / found.found;
@@ -99,7 +100,7 @@ std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::
   if (!IsHeldByStatics(given, as_recorded.calibration)) return std::nullopt;
   Project project = given;
   project.elasticity.torsion = std::vector<std::string>{"*"};
-  project.elasticity.extra.clear();  // causes that a wrong direction has called for
+  project.elasticity.extra.clear();  // causes for which a wrong direction has asked
   Measurements measured = as_recorded;
   measured.calibration = EvenlyThinned(as_recorded.calibration, kMostRows);
   const RecordedModel robot = MakeRecordedModel(project, seed, measured, KnockSearch::kNone);
@@ -121,10 +122,10 @@ std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::
         found.found = error;
       }
     }
-  } catch (const InputError&) {  // fewer equations than a robot with springs has unknowns
+  } catch (const InputError&) {  // fewer equations than the unknowns of a robot with springs
     return std::nullopt;
   }
-  // What is wrong explains the recording: to leave less than another axis is not enough.
+  // A named fault explains the recording: leaving less with another axis is then not enough.
   const double noise = NoiseByDistances(robot.model, recording);
   const auto coordinates =
       static_cast<double>(recording.markers.size() - recording.markers.array().isNaN().count());

@@ -10,25 +10,28 @@
 
 namespace elastocal {
 
-/// A direction up by which gravity bends a robot as a recording shows, and the stated one does not.
+/// An up direction with which the deflection of a robot under gravity explains a recording, while
+/// it does not with the stated one.
 struct UpByLoads {
-  std::string axis;     ///< of the frame of the markers: "y", "-x"
-  double stated = 0.0;  ///< rms distance of the markers from a robot with elastic joints, as stated
-  double found = 0.0;   ///< the same with `axis` up, m
+  std::string axis;  ///< axis of the markers' frame that points up: "y", "-x"
+  /// Rms distance of the markers from a robot with elastic joints, with the stated axis up, m.
+  double stated = 0.0;
+  double found = 0.0;  ///< the same with `axis` up, m
 };
 
-/// Tries each axis of the frame of the markers as the one that points up, on a recording of a robot
-/// whose root link is held (a robot on its feet: FindWrongUp) and whose joints carry what statics
-/// say. Found is an axis with which the error of a fit falls to less than 0.6 of that with the
-/// stated one, or to less than that of a rigid robot and of the `calibrated` one [m, with its
-/// causes], while springs explain nothing with the stated axis. Faults of joints may look like that
-/// too: that few of them leave more with the stated one, the caller has to see. A rigid robot shows
-/// nothing: nothing depends on gravity then.
-/// `as_recorded`: before markers were split at knocks.
+/// Tries each axis of the markers' frame as the up axis, for a robot whose root link is held (for a
+/// robot on its feet: FindWrongUp) and whose joints' loads follow from statics. An axis is returned
+/// if the error of a fit falls to less than 0.6 of that with the stated axis. It is also returned
+/// if the error falls below that of a rigid robot and of the `calibrated` one [m, with its causes],
+/// while springs explain nothing with the stated axis. Faults of joints may look like this, too:
+/// the caller has to check that a few of them leave more error with the stated axis. A rigid robot
+/// shows nothing, because nothing depends on gravity. `as_recorded` is the recording before markers
+/// were split at knocks.
 std::optional<UpByLoads> FindUpByLoads(const Project& given, std::optional<std::uint64_t> seed,
                                        const Measurements& as_recorded, double calibrated);
 
-/// "up: with y up, elastic joints explain the recording to 0.35 mm, with z up only to 1.3 mm ..."
+/// Text such as "up: with y up, elastic joints explain the recording to 0.35 mm, with z up only to
+/// 1.3 mm ...".
 std::string Describe(const UpByLoads& found, const Recording& recording);
 
 }  // namespace elastocal

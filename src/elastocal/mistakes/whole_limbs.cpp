@@ -21,7 +21,7 @@ struct Limb {
   bool operator==(const Limb& other) const { return joints == other.joints; }
 };
 
-/// Joints that turn or slide by themselves, up to the tip of the chain.
+/// Joints with their own motion, up to the tip of the chain.
 std::vector<int> JointsToTip(const RobotTree& tree, const Chain& chain) {
   std::vector<int> joints;
   for (const int k : JointsToBody(tree, tree.links[Size(chain.tip_link)].body)) {
@@ -30,7 +30,7 @@ std::vector<int> JointsToTip(const RobotTree& tree, const Chain& chain) {
   return joints;
 }
 
-/// Of each tip once, however many chains reach it.
+/// The limbs, each tip once, however many chains reach it.
 std::vector<Limb> LimbsOf(const Project& project) {
   std::vector<Limb> limbs;
   for (const Chain& chain : project.chains) {

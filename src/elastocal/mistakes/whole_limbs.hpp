@@ -8,9 +8,9 @@
 
 namespace elastocal {
 
-/// The table with all joints of a limb of the opposite sign, for each chain; and with those of two
-/// limbs exchanged, joint by joint from the body outwards, for each two chains with as many joints.
-/// A joint that carries other chains as well belongs to no limb.
+/// For each chain: the table with all joints of its limb reversed in sign. For each two chains with
+/// the same number of joints: the table with those of the two limbs exchanged, joint by joint from
+/// the body outwards. A joint that also carries other chains belongs to no limb.
 std::vector<LogAlternative> WholeLimbs(const Recording& recording, const Project& project);
 
 }  // namespace elastocal

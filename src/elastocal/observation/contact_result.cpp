@@ -18,8 +18,8 @@ double IntervalFactor(double degrees_of_freedom) {
   return std::clamp(StudentQuantile(0.975, std::max(1.0, degrees_of_freedom)), 1.959964, 12.7);
 }
 
-/// Standard deviations of the priors, by parameter, as those of the posterior widened where few
-/// numbers tell of them; NaN for parameters that are not estimated.
+/// Standard deviations of the priors by parameter, widened like those of the posterior where few
+/// numbers determine them; NaN for parameters that are not estimated.
 Eigen::VectorXd PriorSds(const ObservedRobot& model, const ObservationFit& fit) {
   const double usual = IntervalFactor(fit.degrees_of_freedom);
   const std::vector<SourceOfParameter> sources = SourcesOfParameters(model);
@@ -35,8 +35,8 @@ Eigen::VectorXd PriorSds(const ObservedRobot& model, const ObservationFit& fit) 
   return sds;
 }
 
-/// Covariance of the parameters. Those that have one value in common would make it singular, so
-/// that nothing could be tested with it: each keeps a millionth of its variance to itself.
+/// Covariance of the parameters. Parameters with one value in common would make it singular, so
+/// that nothing could be tested with it: each therefore has a millionth of its variance to itself.
 void TakePosterior(const ObservedRobot& model, const ObservationFit& fit,
                    CalibrationResult& result) {
   std::vector<int> entries;

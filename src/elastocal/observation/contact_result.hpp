@@ -6,13 +6,13 @@
 
 namespace elastocal {
 
-/// The parameters of the robot as other calibrations have them: values, covariance, which of them
-/// the observations determined. `equations`: numbers observed.
+/// The parameters of the robot in the form of other calibrations: values, covariance, and status by
+/// the observations. `equations` is the number of observed numbers.
 CalibrationResult ResultOfContacts(const ObservedRobot& model, const ObservationFit& fit,
                                    int equations);
 
-/// What the observations alone say of the robot: `posterior` has `data_information` and one
-/// parameter for each unknown (those in common have one value), but no covariance.
+/// Information of the observations alone about the robot. `posterior` has `data_information` and
+/// one parameter for each unknown (parameters in common have one value), but no covariance.
 CalibrationResult InformationOfContacts(const ObservedRobot& model,
                                         const Observations& observations,
                                         const ObservationFit& fit);

@@ -16,17 +16,19 @@
 namespace elastocal {
 namespace {
 
-constexpr double kUnexplained = 9.0;      // squares of a number that the own session leaves
-constexpr double kMuchBetter = 0.25;      // of them, that another session leaves
-constexpr double kNoiseLeftOver = 0.5;    // of heights, of tilts or of what else is measured
-constexpr double kMostShare = 1.0 / 3.0;  // of the postures
-// Of two sessions whose postures are mixed: as many as half of them. Noise that is cut in two
-// leaves 0.6 of itself (0.36 of its squares), so less than a half of that is asked for.
+// Mean square of a number, in units of the noise, that its own session leaves.
+constexpr double kUnexplained = 9.0;
+constexpr double kMuchBetter = 0.25;  // ratio of the squares that another session leaves to these
+// Ratio of the noise of heights, of tilts or of another measured quantity.
+constexpr double kNoiseLeftOver = 0.5;
+constexpr double kMostShare = 1.0 / 3.0;  // share of the postures
+// For two sessions whose postures are mixed, as many as half of them. Cutting pure noise in two
+// leaves 0.6 of it (0.36 of its squares), so that less than half of that is required.
 constexpr double kMostOfMixed = 0.5, kNoiseLeftOfMixed = 0.3, kCutInTwo = 0.15;
 constexpr std::size_t kFewestToCut = 8;
 constexpr int kMostSessionRounds = 12;
 
-/// By posture the name of its session; empty where nothing in it depends on one.
+/// Name of the session of each posture; empty where nothing in it depends on a session.
 using Labels = std::vector<std::string>;
 
 /// Effects of sessions by quantity and name.
@@ -41,7 +43,8 @@ EffectsByName NamedEffects(const Observations& observations) {
   return effects;
 }
 
-/// The observations with the session of each posture; what has none of that name stays.
+/// The observations with the given session in each posture; observations without an effect of that
+/// name keep theirs.
 Observations WithLabels(const Labels& labels, const Observations& observations) {
   const EffectsByName effects = NamedEffects(observations);
   Observations changed = observations;
@@ -64,10 +67,11 @@ Labels LabelsOf(const Observations& observations) {
   return labels;
 }
 
-/// Numbers cut in two at the place that leaves least squares about the means of the parts.
+/// A division of numbers into two parts that leaves the smallest squares about the means of the
+/// parts.
 struct Cut {
   double at = 0.0;     ///< the largest number of the lower part
-  double share = 1.0;  ///< of the squares about the mean of all, that is left
+  double share = 1.0;  ///< share of the squares about the common mean that is left
 };
 
 Cut CutInTwo(std::vector<double> numbers) {
@@ -117,7 +121,7 @@ class SessionSearch {
   }
 
  private:
-  /// By posture: squares of what depends on sessions, a number of it on average.
+  /// For each posture: mean square of the numbers that depend on sessions.
   std::vector<double> SquaresBy(const Observations& observations, const ObservedValues& at) const {
     const std::vector<Eigen::VectorXd> left = LeftOf(model_, observations, at);
     std::vector<double> squares(said_.size(), 0.0);
@@ -133,7 +137,7 @@ class SessionSearch {
     return squares;
   }
 
-  /// Root mean squares of what depends on sessions, by the source of its noise.
+  /// Root mean square of the numbers that depend on sessions, by the source of their noise.
   std::map<int, double> NoiseBySource(const Observations& observations,
                                       const ObservedValues& at) const {
     const std::vector<Eigen::VectorXd> left = LeftOf(model_, observations, at);
@@ -152,7 +156,7 @@ class SessionSearch {
     return noise;
   }
 
-  /// By posture the session that leaves least, where its own leaves much more.
+  /// For each posture: the session with the smallest squares, where its own has much larger ones.
   Labels Nearest(const Labels& labels, const ObservedValues& at, double noise) const {
     const std::vector<double> own = SquaresBy(WithLabels(labels, observations_), at);
     Labels nearest = labels;
@@ -171,8 +175,8 @@ class SessionSearch {
     return nearest;
   }
 
-  /// Each two sessions as if their postures were mixed: what lies in two heaps, whatever the
-  /// postures say, is of one session and of the other.
+  /// Treats each two sessions as if their postures were mixed: observations that form two heaps are
+  /// assigned by heap, whatever the rows say.
   void TryMixed(const ObservedValues& at) {
     for (auto a = names_.begin(); a != names_.end(); ++a) {
       for (auto b = std::next(a); b != names_.end(); ++b) {
@@ -185,7 +189,8 @@ class SessionSearch {
     }
   }
 
-  /// By instrument, the two heaps as like the labels as may be; as said where there are none.
+  /// For each instrument: the two heaps, named so that they agree best with the rows; as stated
+  /// where there are no heaps.
   Labels InTwoHeaps(const std::string& a, const std::string& b, const ObservedValues& at) const {
     Labels labels = said_, as_of_a = said_;
     std::replace(as_of_a.begin(), as_of_a.end(), b, a);
@@ -215,11 +220,11 @@ class SessionSearch {
     return labels;
   }
 
-  /// Where the heaps are as large as the sessions: rows that were exchanged are still as many, and
-  /// touches in the air are not.
+  /// Applies the heaps only if they are about as large as the sessions. Exchanging rows does not
+  /// change these numbers; touches in the air do.
   void Label(const std::vector<int>& all, const std::vector<Eigen::VectorXd>& left, int row,
              double at, const std::pair<std::string, std::string>& names, Labels& labels) const {
-    constexpr double kAsMany = 0.15;  // of all
+    constexpr double kAsMany = 0.15;  // share of all
     const auto below = [&](int i) { return left[Size(i)][row] <= at; };
     const auto of_first = [&](int i) {
       return said_[Size(observations_.all[Size(i)].posture)] == names.first;
@@ -238,8 +243,8 @@ class SessionSearch {
     }
   }
 
-  /// From these labels on; taken if at most this share of the postures has another one than it
-  /// says, and less than this share of the noise is left.
+  /// Starts from these labels. The result is taken if at most `most_share` of the postures have
+  /// another session than stated, and at most `noise_left` of the noise is left.
   void Try(Labels labels, ObservedValues at, double most_share, double noise_left) {
     std::set<Labels> seen;
     double noise = Noise(SquaresBy(WithLabels(labels, observations_), at));
@@ -259,7 +264,7 @@ class SessionSearch {
     if (less) Take(labels, most_share);
   }
 
-  /// Squares of a number where most postures are of the session that they say.
+  /// Typical mean square of a number, where most postures have the right session: the median.
   static double Noise(const std::vector<double>& squares) {
     std::vector<double> some;
     for (const double of : squares) {

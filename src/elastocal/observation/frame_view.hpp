@@ -5,16 +5,16 @@
 
 namespace elastocal {
 
-/// A point as a frame sees it whose pose is a quantity (a tracker, a camera), on the floor or on a
-/// link, with derivatives.
+/// A point in a frame whose pose is a quantity (a tracker, a camera) on the floor or on a link,
+/// with derivatives.
 struct FrameView {
-  Eigen::Vector3d p;                           ///< in the frame, m
+  Eigen::Vector3d p;                           ///< position in the frame, m
   Eigen::Matrix<double, 3, 6> by_point_screw;  ///< by the screw of the link that carries the point
-  Eigen::Matrix<double, 3, 6> by_frame;        ///< by the numbers of the frame's pose
+  Eigen::Matrix<double, 3, 6> by_frame;        ///< by the six numbers of the frame's pose
 };
 
-/// `T_floor_parent`: what carries the frame; its screw moves p like by_point_screw, with the other
-/// sign.
+/// `T_floor_parent` is the pose of what carries the frame. The derivative of p by its screw is
+/// by_point_screw with the opposite sign.
 FrameView ViewFrom(const Transform& T_floor_parent, const QuantityValue& frame,
                    const Eigen::Vector3d& p_floor);
 

@@ -8,9 +8,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kHardlyKnown = 1e-4;  // of a measurement: weight of the mounting that was given
+constexpr double kHardlyKnown = 1e-4;  // weight of the given mounting, relative to one measurement
 
-/// What an accelerometer at rest shows, in the axes of the link.
+/// Reading of an ideal accelerometer at rest, in the axes of the link.
 Eigen::Vector3d UpInLink(const Sight& sight) {
   return sight.T_floor_link[0].linear().transpose() * -kGravity;
 }
@@ -41,7 +41,7 @@ Eigen::VectorXd GravityDirection::Predict(const Sight& sight) const {
 void GravityDirection::Begin(const std::vector<Sight>& sights,
                              const std::vector<Eigen::VectorXd>& measured,
                              std::vector<QuantityValue*>& values) const {
-  // Wahba's problem by singular values.
+  // Wahba's problem, solved by singular values.
   Eigen::Matrix3d sum = kHardlyKnown * values[0]->origin.linear();
   for (std::size_t i = 0; i < sights.size(); ++i) {
     sum += UpInLink(sights[i]).normalized() * measured[i].normalized().transpose();

@@ -18,12 +18,12 @@ namespace {
 
 constexpr double kDerivativeStep = 1e-6;  // rad, m
 constexpr double kLeastShare = 0.1;
-constexpr double kCertain = 4.0;      // standard deviations, in noise that has the fault in it
-constexpr double kLeastMoved = 0.01;  // of what a joint moves elsewhere, in squares
-constexpr int kSplitsTried = 12;      // of the table, after which a fault may begin
+constexpr double kCertain = 4.0;      // standard deviations, in noise that contains the fault
+constexpr double kLeastMoved = 0.01;  // share of a joint's effect elsewhere, in squares
+constexpr int kSplitsTried = 12;      // places in the table at which a fault may begin
 constexpr double kOneDegree = M_PI / 180.0;
 
-/// Sizes from which a fault is none that a good robot and good instruments may have.
+/// Smallest size that a good robot with good instruments does not have.
 double LeastSize(const ObservationFault& fault, bool slides) {
   switch (fault.kind) {
     case ObservationFaultKind::kJointGain:
@@ -39,7 +39,7 @@ double LeastSize(const ObservationFault& fault, bool slides) {
   }
 }
 
-/// Sizes beyond which it is another fault that this one imitates.
+/// Largest size; beyond it another fault is imitated.
 double LargestSize(const ObservationFault& fault, bool slides) {
   const double angle = 15.0 * kOneDegree;
   if (fault.kind == ObservationFaultKind::kJointGain) return 0.3;
@@ -69,7 +69,7 @@ class ObservationFaultSearch {
     return Best();
   }
 
-  /// How much of a fault of a joint's positions or of a scale is left.
+  /// The part of a joint's or a scale's fault that is still there.
   double Left(const ObservationFault& fault) {
     if (!Linearise()) return 0.0;
     const NormalEquations equations(*residuals_);
@@ -80,7 +80,7 @@ class ObservationFaultSearch {
   }
 
  private:
-  /// Evaluates the fit; false where nothing is left.
+  /// Evaluates the fit; false where there are no residuals.
   bool Linearise() {
     residuals_.emplace(model_, observations_, fit_.loads, fit_.spread, weights_,
                        ObservationFreedom{}, fit_.values);
@@ -110,7 +110,8 @@ class ObservationFaultSearch {
     return changed;
   }
 
-  /// Of a scale, of tags or of a joint's positions: changed by kDerivativeStep as undoes one of the
+  /// The observations changed by kDerivativeStep of a scale, tag size or joint position, which
+  /// undoes a fault of the opposite sign.
   /// opposite sign.
   Observations Undone(const ObservationFault& fault) const {
     if (fault.kind == ObservationFaultKind::kScale) return Scaled();
@@ -120,7 +121,7 @@ class ObservationFaultSearch {
     return Moved(fault.coordinate);
   }
 
-  /// By posture, what the fault multiplies there: of a gain, the positions.
+  /// Factor of the fault in each posture: of a gain, the positions.
   Eigen::VectorXd FactorOf(const ObservationFault& fault) const {
     const int count = observations_.posture_count();
     Eigen::VectorXd factor(count);
@@ -138,7 +139,7 @@ class ObservationFaultSearch {
     return factor;
   }
 
-  /// Those of the fit; what it left out counts as far as Huber's weights let it.
+  /// Weights of the fit; observations that it left out get Huber's weight.
   std::vector<double> LimitedWeights() const {
     const std::vector<Eigen::VectorXd> left = LeftOf(model_, observations_, fit_.values);
     std::vector<double> weights;
@@ -149,14 +150,14 @@ class ObservationFaultSearch {
     return weights;
   }
 
-  /// Of the observations.
+  /// Residuals of the observations.
   std::vector<Eigen::VectorXd> ResidualsOf(const ObservationResiduals& residuals) const {
     std::vector<Eigen::VectorXd> blocks(posture_.size());
     for (int i = 0; i < observations_.count(); ++i) blocks[Size(i)] = residuals.Residual(i);
     return blocks;
   }
 
-  /// Change of the residuals over kDerivativeStep, where observations or values are changed by it.
+  /// Derivative of the residuals, where observations or values are changed by kDerivativeStep.
   std::vector<Eigen::VectorXd> DerivativeBy(const Observations& changed,
                                             const ObservedValues& values) const {
     InterruptionPoint();
@@ -174,7 +175,7 @@ class ObservationFaultSearch {
     return tree.joints[Size(tree.coordinate_joint[Size(coordinate)])];
   }
 
-  /// Of joints that were estimated and did move.
+  /// Coordinates of joints that were estimated and moved.
   std::set<int> MovingCoordinates() const {
     std::set<int> moving;
     for (const int joint : model_.robot.active_joints) {
@@ -195,7 +196,7 @@ class ObservationFaultSearch {
     return {fault, FactorOf(fault)};
   }
 
-  /// The best of these that is one; nothing where none is.
+  /// The best of the tried faults that passes all limits; nothing where none does.
   std::optional<ObservationFault> Try(const NormalEquations& equations,
                                       const Eigen::MatrixXd& covariance,
                                       const std::vector<Eigen::VectorXd>& derivative,
@@ -209,7 +210,7 @@ class ObservationFaultSearch {
     std::optional<ObservationFault> best;
     for (std::size_t k = 0; k < tried.size(); ++k) {
       ObservationFault fault = tried[k].fault;
-      fault.size = -additions[k].value;  // what is added undoes it
+      fault.size = -additions[k].value;  // what is added undoes the fault
       fault.sd = std::sqrt(additions[k].variance);
       fault.share = additions[k].gain / squares_;
       const double size = std::abs(fault.size);
@@ -220,7 +221,7 @@ class ObservationFaultSearch {
     return best;
   }
 
-  /// From some posture on: evenly over the table first, then near the best.
+  /// Tries faults from some posture on: first evenly over the table, then near the best.
   std::optional<ObservationFault> TryFromSomewhereOn(const NormalEquations& equations,
                                                      const Eigen::MatrixXd& covariance,
                                                      const std::vector<Eigen::VectorXd>& derivative,
@@ -267,7 +268,8 @@ class ObservationFaultSearch {
     Keep(TryFromSomewhereOn(equations, covariance, derivative, fault, slides));
   }
 
-  /// Of single files; of all only where an earlier calibration tells the lengths of the robot.
+  /// Tries the scale of single files, and of all files only where an earlier calibration tells the
+  /// lengths of the robot.
   void TryScales(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
     const std::vector<Eigen::VectorXd> derivative = DerivativeBy(Scaled(), fit_.values);
     ObservationFault fault;
@@ -279,7 +281,7 @@ class ObservationFaultSearch {
     }
   }
 
-  /// All at once, and each among others.
+  /// Tries all tags together, and each by itself.
   void TryTags(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
     std::set<int> tags;
     for (const Observation& of : observations_.all) {
@@ -313,8 +315,9 @@ class ObservationFaultSearch {
     }
   }
 
-  /// Joints that are frozen in postures that are worse than the others. A joint that does not move
-  /// what was measured there (the right arm, while the left hand touches) may well have rested.
+  /// Finds joints that are frozen in postures with larger residuals than the others. A joint that
+  /// does not move what was measured there (the right arm, while the left hand touches) may well
+  /// have rested.
   void TryFrozen() {
     const int count = observations_.posture_count();
     const Eigen::VectorXd squares = SquaresByPosture(at_);
@@ -340,7 +343,7 @@ class ObservationFaultSearch {
     return squares;
   }
 
-  /// One of each joint and quantity, the one that explains most first.
+  /// Selects one fault of each joint and quantity, the one that explains most first.
   std::vector<ObservationFault> Best() {
     std::stable_sort(found_.begin(), found_.end(),
                      [](const auto& a, const auto& b) { return a.share > b.share; });
@@ -362,7 +365,7 @@ class ObservationFaultSearch {
   std::optional<ObservationResiduals> residuals_;
   std::vector<int> posture_;  // by residual block; -1: a prior
   std::vector<Eigen::VectorXd> at_;
-  double squares_ = 0.0;  // of the observations
+  double squares_ = 0.0;  // sum over the observations
   std::vector<ObservationFault> found_;
 };
 

@@ -8,22 +8,22 @@
 
 namespace elastocal {
 
-/// Looks for the faults that explain most of what a fit has left: each is one more unknown beside
-/// all others (score test), so that it is not confused with what errors of the robot explain as
-/// well. Observations that were left out take part with a limited weight. Returned are those of a
-/// size that matters (gain 0.5 %; scale 0.3 %; offset, drift 0.25 degrees, 1 mm; move 0.5 mm, 0.05
-/// degrees), certain
-/// (four standard deviations, in noise that has the fault in it) and a tenth of what is left, the
-/// one that explains most first, one for each joint or quantity; among them joints that are logged
-/// in exactly the same place in five and more postures that follow each other, which are worse than
-/// the others.
+/// Finds faults that explain most of the residuals of a fit. Each fault is tested as one more
+/// unknown beside all others (score test), so that it is not confused with errors of the robot that
+/// explain the same. Observations that were left out take part with a limited weight. A fault is
+/// returned if its size matters (gain 0.5 %; scale and size of tags 0.3 %; offset and drift 0.25
+/// degrees or 1 mm; displacement 0.5 mm or 0.05 degrees), if it is certain (four standard
+/// deviations, in noise that contains the fault), and if it explains at least a tenth of the
+/// squared residuals. At most one fault is returned for each joint or quantity, the one that
+/// explains most first. Frozen joints are those with exactly the same logged position in at least
+/// five consecutive postures whose residuals are larger than the others'.
 std::vector<ObservationFault> FindObservationFaults(const ObservedRobot& model,
                                                     const Observations& observations,
                                                     const ObservationFit& fit);
 
-/// The fault with its size refined, by what is left of it beside a fit without it: the score test
-/// tells it to first order. The standard deviation stays: that of a fit without the fault does not
-/// know what the model lacks. Frozen positions and what was moved stay as they are.
+/// The fault with its size refined by the residuals of a fit without it, because the score test
+/// gives it to first order only. The standard deviation is kept: that of a fit without the fault
+/// does not contain the model's errors. Frozen positions and displacements are returned unchanged.
 ObservationFault Refined(ObservationFault fault, const ObservedRobot& model,
                          const Observations& observations);
 

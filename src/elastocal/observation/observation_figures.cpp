@@ -14,9 +14,9 @@
 namespace elastocal {
 namespace {
 
-// What calibrated robots do not leave, root mean square.
+// Root mean square errors that calibrated robots do not exceed.
 constexpr double kLargestPlace = 0.02;  // m
-constexpr double kLargestShare = 0.01;  // of the robot's size
+constexpr double kLargestShare = 0.01;  // share of the robot's size
 constexpr double kLargestTurn = 5.0 * M_PI / 180.0;
 constexpr double kLargestAcceleration = 0.5;  // m/s^2
 constexpr double kLargestPixel = 20.0;

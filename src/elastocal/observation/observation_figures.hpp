@@ -11,17 +11,17 @@
 
 namespace elastocal {
 
-/// How far rows of one meaning are off, over all observations of an instrument.
+/// Errors of rows of one meaning, over all observations of an instrument.
 struct RowErrors {
   int instrument = 0;
   std::string row;  ///< RowMeaning::name
   SourceUnit unit = SourceUnit::kNone;
   int observations = 0;
-  double rms = 0.0;      ///< over observations and coordinates, SI
-  double largest = 0.0;  ///< of one coordinate
+  double rms = 0.0;      ///< root mean square over observations and coordinates, SI
+  double largest = 0.0;  ///< largest error of one coordinate
 };
 
-/// How far touches are from lying flush, as root mean squares over touches.
+/// Deviation of touches from lying flush, as root mean squares over touches.
 struct TouchErrors {
   int touches = 0;
   double height = 0.0;  ///< m
@@ -29,56 +29,55 @@ struct TouchErrors {
   double tilt_y = 0.0;
   double largest_height = 0.0;  ///< m
 
-  double tilt() const;  ///< over both axes, rad: one number is one angle
+  double tilt() const;  ///< over both axes, rad: each counts as one angle
 };
 
-/// Errors of all instruments that were read; of flush touches all together, and of each plate (0
-/// touches: none).
+/// Errors of all instruments that were read. Flush touches are given together, and for each plate
+/// (0 touches: none).
 struct ObservationFigures {
   TouchErrors all;
   std::vector<TouchErrors> by_plate;
   std::vector<RowErrors> rows;
 };
 
-/// `left`: of each observation, as LeftOf has it.
+/// `left` holds the residual of each observation, as from LeftOf.
 ObservationFigures MakeFigures(const ObservedRobot& model, const Observations& observations,
                                const std::vector<Eigen::VectorXd>& left);
 
-/// Standard deviation of the noise of such rows, root mean square over them, SI.
+/// Standard deviation of the noise of these rows, root mean square over them, SI.
 double NoiseOf(const ObservedRobot& model, const RowErrors& row, const Spread& spread);
 
-/// Observations that were predicted by an estimate from the others.
+/// Residuals of observations that were predicted by an estimate from the others.
 struct ObservationCrossValidation {
   int folds = 0;
-  std::vector<Eigen::VectorXd> left;  ///< of each observation, SI
+  std::vector<Eigen::VectorXd> left;  ///< residual of each observation, SI
   ObservationFigures figures;
-  int unsettled = 0;  ///< estimates whose variances did not come to rest
+  int unsettled = 0;  ///< number of estimates whose variances did not come to rest
 };
 
-/// k-fold cross-validation: posture i is in fold i modulo `folds`. With each fold everything is
-/// decided anew that an estimate decides. Throws InputError unless `folds` is from 2 to the number
-/// of postures.
+/// k-fold cross-validation. Posture i is in fold i modulo `folds`. Each fold decides anew all that
+/// an estimate decides. Throws InputError unless `folds` is from 2 to the number of postures.
 ObservationCrossValidation CrossValidate(const ObservedRobot& model,
                                          const Observations& observations,
                                          const ObservationFreedom& freedom, int folds, int threads,
                                          const Progress& progress = {});
 
-/// Registers the surroundings (tables, trackers) anew on observations of another day, robot and
-/// mountings staying as they are: each posture is predicted by surroundings that the others place,
-/// with the effects of sessions that `spread` expects. A plate of fewer than four touches cannot be
-/// judged: InputError.
+/// Residuals after the surroundings (tables, trackers) are registered anew on observations of
+/// another day; robot and mountings stay unchanged. Each posture is predicted by surroundings that
+/// the other postures place, with effects of sessions as wide as `spread`. Throws InputError for a
+/// plate with fewer than four touches, which cannot be judged.
 std::vector<Eigen::VectorXd> LeftAfterRegistration(const ObservedRobot& model,
                                                    const Observations& observations,
                                                    const ObservedValues& values,
                                                    const Spread& spread);
 
-/// More than what any calibrated robot is off by, root mean square, SI: 20 mm (of a robot larger
-/// than 2 m, 1 % of RobotSize), 5 degrees, 0.5 m/s^2, 20 pixels.
+/// Error that no calibrated robot exceeds, root mean square, SI: 20 mm (1 % of RobotSize for a
+/// robot larger than 2 m), 5 degrees, 0.5 m/s^2, 20 pixels.
 double LargestError(const ObservedRobot& model, SourceUnit unit);
 
-/// Whether observations are better explained by `after` than by `before`: mean over postures of the
-/// difference in squared error, in units of its standard deviation (about normal for many
-/// postures). Errors are in units of `spread`'s noise.
+/// Gain of `after` over `before`: mean over postures of the difference in squared error, divided by
+/// its standard deviation (about standard normal for many postures). Positive: `after` explains the
+/// observations better. Errors are in units of the noise in `spread`.
 double GainInSds(const ObservedRobot& model, const Observations& observations,
                  const std::vector<Eigen::VectorXd>& before,
                  const std::vector<Eigen::VectorXd>& after, const Spread& spread);

@@ -16,16 +16,17 @@ namespace elastocal {
 namespace {
 
 constexpr double kSettled = 1e-4;         // relative change of a standard deviation
-constexpr double kRoughlySettled = 1e-2;  // of a fit that only looks for outliers
-constexpr double kSlightStep = 1e-9;      // of the cost
-constexpr double kLeastNoise = 1e-9;      // SI: roundings
-constexpr double kLeastOfGuess = 5e-3;    // that the noise of an instrument is taken to be
-constexpr double kHuberShare = 0.99;      // of observations that count whole
-constexpr double kLeastRows = 0.01;    // share of rows that is left over where it is all but zero
-constexpr double kGrossFreedom = 4.0;  // of the Student distribution of observations
+constexpr double kRoughlySettled = 1e-2;  // for a fit that only looks for outliers
+constexpr double kSlightStep = 1e-9;      // relative to the cost
+constexpr double kLeastNoise = 1e-9;      // SI: rounding
+constexpr double kLeastOfGuess = 5e-3;    // smallest ratio of an instrument's noise to its guess
+constexpr double kHuberShare = 0.99;      // share of observations whose weight is 1
+constexpr double kLeastRows = 0.01;       // smallest share of rows that counts as left
+// Degrees of freedom of the Student distribution of observations.
+constexpr double kGrossFreedom = 4.0;
 
-/// Sum of squares over a source's rows, in units of its standard deviation, how many rows they
-/// are, how much of them the fit explains, and the squares of each observation.
+/// Sums over the rows of one source: squares in units of its standard deviation, number of rows,
+/// the share that the fit explains, and the square of each row of an observation.
 struct SourceSum {
   double squares = 0.0, rows = 0.0, explained = 0.0;
   double own = 1.0;  // Source::own_weight
@@ -54,7 +55,7 @@ std::vector<SourceSum> SumBySource(const ObservationResiduals& residuals,
   return sums;
 }
 
-/// Numbers from which a standard deviation is found.
+/// Number of numbers from which a standard deviation is estimated.
 double FreedomOf(const SourceSum& sum) {
   return std::max(kLeastRows * sum.rows, sum.rows - sum.explained) + sum.own;
 }
@@ -68,8 +69,8 @@ std::vector<double> FreedomBySource(const std::vector<SourceSum>& sums,
   return freedom;
 }
 
-/// The first guess of a source's variance. The zero offsets of legs, trunk and limbs have one
-/// guess: what all of them show together, for one maker sets all encoders.
+/// The first guess of a source's variance. The zero offsets of legs, trunk and limbs share one
+/// guess, which all of them show together, because one maker sets all encoders.
 double FirstGuess(const std::vector<SourceSum>& sums, const std::vector<Source>& sources,
                   const Spread& spread, std::size_t source) {
   const double own = sources[source].sd * sources[source].sd;
@@ -83,10 +84,10 @@ double FirstGuess(const std::vector<SourceSum>& sums, const std::vector<Source>&
   return squares / freedom;
 }
 
-/// The variance of the noise of an instrument that `squares` (SI) tell, beside a guess of the
-/// weight `own`, which is a part of `freedom`. Instruments are often much better than guessed: the
-/// guess counts as no more than twice the standard deviation that the squares alone tell, or it
-/// would be most of what is found; where these are few, as what they leave possible. Rows that
+/// The variance of an instrument's noise by its sum of squares (SI) and a guess with the weight
+/// `own`, which is part of `freedom`. Instruments are often much better than guessed. The guess
+/// therefore counts as at most twice the standard deviation that the squares alone give (with few
+/// numbers: as at most what these leave possible), because it would otherwise dominate. Rows that
 /// unknowns explain one by one leave no squares, whatever the noise is.
 double NoiseVariance(double squares, double guess, double freedom, double own) {
   constexpr double kFarGuess = 2.0;
@@ -101,7 +102,7 @@ double NoiseVariance(double squares, double guess, double freedom, double own) {
   return std::max((squares + own * counted) / freedom, kLeastOfGuess * kLeastOfGuess * guess);
 }
 
-/// The largest relative change.
+/// Updates the standard deviations and returns their largest relative change.
 double UpdateSpread(const std::vector<SourceSum>& sums, const std::vector<Source>& sources,
                     bool robust, Spread& spread) {
   double change = 0.0;
@@ -133,7 +134,8 @@ double SquaredDistance(const Instrument& instrument, const Eigen::VectorXd& left
   return (instrument.Weights(spread) * left).squaredNorm();
 }
 
-/// Huber's weights by the distance of each observation; those of 0 stay.
+/// Updates Huber's weights by the distance of each observation; weights of 0 stay. Returns the
+/// largest change.
 double UpdateWeights(const ObservationResiduals& residuals, const ObservedRobot& model,
                      const Observations& observations, const Spread& spread,
                      std::vector<double>& weights) {
@@ -166,7 +168,7 @@ void TakeCovariance(const ObservedRobot& model, const Observations& observations
   }
 }
 
-/// Numbers beside the data's that told of the noise before.
+/// Number of numbers, beside the data's, from which the noise was known before.
 double KnownOfNoise(const ObservedRobot& model, const Observations& observations) {
   std::set<int> seen;
   for (const Observation& of : observations.all) {
@@ -180,7 +182,7 @@ double KnownOfNoise(const ObservedRobot& model, const Observations& observations
   return known;
 }
 
-/// Numbers of the observations that the unknowns explain, and how many are left.
+/// Counts the numbers of the observations that the unknowns explain, and those that are left.
 void TakeCounts(const ObservedRobot& model, const Observations& observations,
                 const std::vector<Eigen::VectorXd>& explained, ObservationFit& fit) {
   fit.effective_parameters = 0.0;
@@ -194,9 +196,9 @@ void TakeCounts(const ObservedRobot& model, const Observations& observations,
       std::max(1.0, rows - fit.effective_parameters) + KnownOfNoise(model, observations);
 }
 
-/// Degrees of freedom of the variance of each entry of x (Satterthwaite 1946). Each source adds a
-/// part to that variance, and is known as well as the numbers say that told of it: priors by their
-/// own rows, an earlier calibration for certain; what is left comes from the noise.
+/// Degrees of freedom of the variance of each entry of x (Satterthwaite 1946). Each source
+/// contributes a part of that variance and is known by its number of numbers: priors by their own
+/// rows, an earlier calibration exactly; the rest is due to the noise.
 Eigen::VectorXd FreedomOfEntries(const ObservationResiduals& residuals, int observations,
                                  const Eigen::MatrixXd& covariance, const ObservationFit& fit) {
   std::vector<Eigen::Index> first = {0};
@@ -228,7 +230,7 @@ Eigen::VectorXd FreedomOfEntries(const ObservationResiduals& residuals, int obse
   return variances.cwiseAbs2().cwiseQuotient(doubt);
 }
 
-/// Widens standard deviations where the variance that they come from is not well known.
+/// Widens standard deviations whose variance is not well known.
 void WidenByDoubt(const Eigen::VectorXd& freedom, double usual, Eigen::MatrixXd& covariance) {
   constexpr double kInterval = 0.975;
   const double least = StudentQuantile(kInterval, usual);
@@ -238,8 +240,8 @@ void WidenByDoubt(const Eigen::VectorXd& freedom, double usual, Eigen::MatrixXd&
   covariance = (factors.asDiagonal() * covariance * factors.asDiagonal()).eval();
 }
 
-/// One step with all that follows from its linearisation; whether all came to rest. The covariance
-/// is that of the last step: what comes of standard deviations takes no part in the steps.
+/// Makes one step, and all that follows from its linearisation. Returns whether all came to rest.
+/// The covariance is that of the last step, before its standard deviations were updated.
 bool UpdateFit(const ObservedRobot& model, const Observations& observations,
                const ObservationFitOptions& options, bool last, ObservationFit& fit) {
   if (options.freedom.robot) fit.loads = ObservedLoads(model, observations, fit.values.robot);

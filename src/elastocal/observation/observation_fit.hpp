@@ -10,70 +10,73 @@
 
 namespace elastocal {
 
-/// Values with what was found to vary, and their uncertainty.
+/// Estimated values with their standard deviations by source, and their uncertainty.
 struct ObservationFit {
   ObservedValues values;
   Spread spread;
-  std::vector<double> weights;  ///< by observation: 1, less where it is further off than the noise
-                                ///< explains, 0 for one that is left out
+  /// By observation: 1, less where it is further off than the noise explains, 0 if it is left out.
+  std::vector<double> weights;
   std::vector<JointLoads> loads;  ///< by posture
-  /// Numbers that told how large each standard deviation of `spread` is, that of its first guess
-  /// included; infinite where it is fixed.
+  /// Number of numbers from which each standard deviation of `spread` was estimated, that of its
+  /// first guess included; infinite where it is fixed.
   std::vector<double> spread_freedom;
-  /// Posterior covariance of the unknowns, SI, and where they stand in it (-1: not estimated): each
-  /// unknown of the robot, the first number of each quantity and of each session's effect. Where
-  /// the spread is estimated, standard deviations are those whose multiple by Student's t with
-  /// `degrees_of_freedom` is the half width of the interval. An unknown that hangs on a source of
-  /// which few numbers tell has a t of its own, by Satterthwaite (docs/algorithms.md).
+  /// Posterior covariance of the unknowns, SI, and their entries in it (-1: not estimated): each
+  /// unknown of the robot, and the first number of each quantity and of each session's effect.
+  /// Where the spread is estimated, the standard deviations are scaled so that their multiple by
+  /// Student's t with `degrees_of_freedom` is the half width of the interval. An unknown that
+  /// depends on a source with few numbers has a t of its own, by Satterthwaite
+  /// (docs/algorithms.md).
   Eigen::MatrixXd covariance;
   std::vector<int> entry_of_unknown, entry_of_quantity, entry_of_effect;
-  double effective_parameters = 0.0;  ///< numbers that the observations determine
-  double degrees_of_freedom = 1.0;    ///< of the uncertainty: numbers left over for the noise
-  bool settled = false;               ///< whether the variances came to rest
+  double effective_parameters = 0.0;  ///< count of numbers that the observations determine
+  double degrees_of_freedom = 1.0;  ///< numbers left for the noise, on which the uncertainty rests
+  bool settled = false;             ///< the variances came to rest
   Termination termination = Termination::kFailure;
   int iterations = 0;
 };
 
-/// Fits what is free, from nominal or from `start`, to the observations whose weight is not 0. The
-/// standard deviations of all sources that are not fixed follow from the residuals (restricted
-/// maximum likelihood by Harville's fixed point, as VarianceComponent has it); each keeps
-/// the weight of one number at the standard deviation that it started from (zero offsets of legs,
-/// trunk and limbs: at that of all zero offsets together), so that a source of which few numbers
-/// tell anything neither vanishes nor explodes.
+/// Settings of FitObservations.
 struct ObservationFitOptions {
   ObservationFreedom freedom = {};
   bool estimate_spread = true;
-  /// By medians over observations, which those gone wrong cannot move.
+  /// Estimate the noise by medians, which outliers do not affect.
   bool robust = false;
   int max_updates = 300;
 };
+/// Fits what is free, starting from `start`, to the observations whose weight is not 0. The
+/// standard deviations of all sources that are not fixed are estimated from the residuals
+/// (restricted maximum likelihood by Harville's fixed point, as in VarianceComponent). Each keeps
+/// the weight of Source::own_weight numbers at its first guess (zero offsets of legs, trunk and
+/// limbs: at that of all zero offsets together), so that a source with few numbers neither vanishes
+/// nor explodes.
 ObservationFit FitObservations(const ObservedRobot& model, const Observations& observations,
                                const ObservationFit& start, const ObservationFitOptions& options);
 
-/// Where every fit begins: nominal robot, all observations, nothing known of variances.
+/// Start of every fit: nominal robot, all observations, first guesses of the standard deviations.
 ObservationFit StartFit(const ObservedRobot& model, const Observations& observations);
 
-/// What the observations alone tell of the unknowns of the robot, all else being unknown with its
-/// prior: their information, unknowns x unknowns, SI.
+/// Information of the observations alone about the unknowns of the robot, with all else unknown
+/// under its prior: unknowns x unknowns, SI.
 Eigen::MatrixXd RobotInformation(const ObservedRobot& model, const Observations& observations,
                                  const ObservationFit& fit);
 
-/// Huber's weight of an observation by how far it is off: 1 for 99 % of those that have no more
-/// than the noise of `spread`, less beyond.
+/// Huber's weight of an observation by its distance in units of the noise of `spread`: 1 up to the
+/// distance that 99 % of correct observations have, less beyond.
 double HuberWeight(const Instrument& instrument, const Eigen::VectorXd& left, const Spread& spread);
 
-/// An observation that contradicts the others: it is left out.
+/// An observation that contradicts the others and is left out.
 struct ObservationOutlier {
   int observation = 0;
-  Eigen::VectorXd left = {};  ///< SI
+  Eigen::VectorXd left = {};  ///< residual, SI
 };
 
-/// A whole estimate: a fit by medians; observations gone wrong are named and left out (further off
-/// than Student's t with four degrees of freedom allows); a fit by squares to the rest.
+/// Result of EstimateObserved.
 struct ObservedEstimate {
   ObservationFit fit;
   std::vector<ObservationOutlier> outliers = {};
 };
+/// Makes a complete estimate: a fit by medians, after which outliers (further off than Student's t
+/// with four degrees of freedom allows) are named and left out, and a fit by squares to the rest.
 ObservedEstimate EstimateObserved(const ObservedRobot& model, const Observations& observations,
                                   const ObservationFreedom& freedom);
 

@@ -9,22 +9,22 @@
 namespace elastocal {
 namespace {
 
-constexpr double kQuantityScale = 0.01;  // m, rad and whatever else quantities have
+constexpr double kQuantityScale = 0.01;  // m, rad and other units of quantities
 
-/// Screw on the floor by rotation [rad] and displacement [m] of a body whose origin is at p.
+/// Screw on the floor from the rotation [rad] and displacement [m] of a body whose origin is at p.
 Matrix6d ScrewByMotion(const Eigen::Vector3d& p) {
   Matrix6d by_motion = Matrix6d::Identity();
   by_motion.bottomLeftCorner<3, 3>() = Skew(p);
   return by_motion;
 }
 
-/// What a quantity that differs between sessions varies by.
+/// Source of the effect of a quantity that differs between sessions.
 int SourceOfEffect(const Quantity& quantity, bool angle) {
   if (quantity.set_up_anew) return angle ? kTrackerTurn : kTrackerPlace;
   return angle ? kSessionTilt : kSessionHeight;
 }
 
-/// Screw in a frame by a screw in another one.
+/// Matrix that transforms screws from one frame to another.
 Matrix6d ScrewByScrew(const Transform& T) {
   Matrix6d by_screw = Matrix6d::Zero();
   by_screw.topLeftCorner<3, 3>() = T.linear();
@@ -79,7 +79,7 @@ int ObservationResiduals::AddBlock(int size) {
 
 void ObservationResiduals::AddRobotBlocks() {
   robot_entry_.assign(static_cast<std::size_t>(model_.unknown_count), -1);
-  int joint = -1;  // of the block in hand
+  int joint = -1;  // joint of the current block
   for (int i = 0; i < model_.robot.parameter_count(); ++i) {
     const int unknown = model_.unknown[i];
     if (unknown < 0 || robot_entry_[unknown] >= 0) continue;
@@ -170,7 +170,7 @@ void ObservationResiduals::AddObservations() {
   }
 }
 
-/// `sources`: by entry of the block; -1: it has no prior here.
+/// `sources` holds the source of each entry of the block; -1: it has no prior here.
 void ObservationResiduals::AddPrior(int block, const std::vector<int>& sources,
                                     const std::vector<double>& units) {
   std::vector<PriorRow> rows;
@@ -213,7 +213,7 @@ void ObservationResiduals::AddRobotPriors() {
   for (int b = 0; b < robot_blocks_; ++b) AddPrior(b, sources[b], units[b]);
 }
 
-/// The last block, which depends on all of the robot.
+/// Adds the last block, which depends on all unknowns of the robot.
 void ObservationResiduals::AddEarlier() {
   const EarlierPart earlier = PartOf(model_.earlier, model_.robot, ParameterOfUnknown(model_));
   const auto count = static_cast<int>(earlier.positions.size());
@@ -330,7 +330,7 @@ void ObservationResiduals::EvaluateObservation(int index, const ObservedValues& 
   const Sight sight = posture_.SightOf(observations_, observation, values);
   const ObservationResidual at = instrument.Evaluate(sight, observation.measured);
   left_[index] = at.left;
-  // One that takes no part is seen as if it counted whole.
+  // An observation with weight 0 is evaluated with weight 1.
   const double weight = weights_[index] > 0.0 ? std::sqrt(weights_[index]) : 1.0;
   const Eigen::MatrixXd weights = weight * instrument.Weights(spread_);
   residuals_[index] = weights * at.left;

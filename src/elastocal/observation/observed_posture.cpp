@@ -13,7 +13,7 @@
 namespace elastocal {
 namespace {
 
-/// The pose of a tracker by what it sees of points; nothing of too few.
+/// Pose of a tracker by the points that it sees; nothing for fewer than `fewest`.
 std::optional<Transform> Register(const Instrument::Landmarks& landmarks, std::size_t fewest) {
   if (landmarks.size() < fewest) return std::nullopt;
   Eigen::Matrix3Xd here(3, std::ssize(landmarks));
@@ -25,7 +25,7 @@ std::optional<Transform> Register(const Instrument::Landmarks& landmarks, std::s
   return FitRigid(there, here);
 }
 
-/// What a session adds to the numbers of a pose (QuantityValue::Pose) with this origin.
+/// Effect of a session on the numbers of a pose (QuantityValue::Pose) with this origin.
 Eigen::VectorXd EffectOf(const Transform& pose, const Transform& origin) {
   Eigen::VectorXd effect(6);
   const Eigen::Matrix3d turn = pose.linear() * origin.linear().transpose();
@@ -33,12 +33,13 @@ Eigen::VectorXd EffectOf(const Transform& pose, const Transform& origin) {
   return effect;
 }
 
-/// Moves the origins of trackers' poses to where the nominal robot suggests them: those that differ
-/// between sessions to where it does in the one of which they saw most, and the effects of the
-/// others likewise.
+/// Moves the origins of trackers' poses to those that the nominal robot suggests. A tracker that
+/// differs between sessions gets the pose of the session in which it saw most points; the effects
+/// of the other sessions are set likewise.
 void RegisterTrackers(const ObservedRobot& model, const Observations& observations,
                       const std::vector<Sight>& sights, ObservedValues& values) {
-  constexpr std::size_t kFewestOfSession = 8;  // points, else the session is as the others
+  // Points; with fewer, the session is taken as the others.
+  constexpr std::size_t kFewestOfSession = 8;
   std::vector<Instrument::Landmarks> fixed(values.quantities.size());  // without effect
   std::vector<Instrument::Landmarks> of_effects(observations.effects.size());
   for (std::size_t i = 0; i < sights.size(); ++i) {
@@ -125,7 +126,7 @@ std::vector<JointLoads> ObservedLoads(const ObservedRobot& model, const Observat
   for (int i = 0; i < observations.posture_count(); ++i) {
     const Eigen::VectorXd q = observations.q.row(i);
     JointLoads load;
-    for (int step = 0; step < 2; ++step) {  // of the rigid, then of the deflected robot
+    for (int step = 0; step < 2; ++step) {  // first for the rigid, then for the deflected robot
       if (links.empty()) {
         load = GravityLoads(model.robot, geometry, q, kGravity, 0, load);
         continue;

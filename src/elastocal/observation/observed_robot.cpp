@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-/// The links that joints move and instruments see, ascending.
+/// Links that joints move and instruments see, ascending.
 std::set<int> MovingLinks(const RobotTree& tree, const ObservationSetup& setup) {
   std::set<int> links;
   for (const auto& instrument : setup.instruments) {
@@ -23,7 +23,7 @@ std::set<int> MovingLinks(const RobotTree& tree, const ObservationSetup& setup) 
   return links;
 }
 
-/// Makes the parameters that `patterns` match one unknown: that of the first of them.
+/// Makes the parameters that match `patterns` one unknown: that of the first of them.
 void JoinUnknowns(const std::vector<std::string>& patterns, const ErrorModel& robot,
                   std::vector<int>& unknown) {
   CheckPatterns(robot.parameters, patterns);
@@ -39,7 +39,7 @@ void JoinUnknowns(const std::vector<std::string>& patterns, const ErrorModel& ro
   }
 }
 
-/// Gives the unknowns numbers without gaps.
+/// Numbers the unknowns without gaps.
 void NumberUnknowns(ObservedRobot& model) {
   std::vector<int> number(model.unknown.size(), -1);
   model.unknown_count = 0;
@@ -50,7 +50,7 @@ void NumberUnknowns(ObservedRobot& model) {
   }
 }
 
-/// Of a joint: whether it carries a foot, and how many observed bodies that carry no other one.
+/// What a joint carries: whether a foot, and how many observed bodies that carry no other one.
 struct CarriedLinks {
   bool foot = false;
   int ends = 0;
@@ -98,7 +98,8 @@ ObservedRobot MakeObservedRobot(const RobotTree& tree, const PlacementOptions& p
     const Quantity tilt{"root.tilt", {kRootTilt, kRootTilt}, true};
     const auto is_tilt = [&](const Quantity& of) { return of.sources == tilt.sources; };
     const auto found = std::find_if(setup.quantities.begin(), setup.quantities.end(), is_tilt);
-    model.root_tilt = found != setup.quantities.end()  // of another model of the same robot
+    // The setup comes from another model of the same robot.
+    model.root_tilt = found != setup.quantities.end()
                           ? static_cast<int>(found - setup.quantities.begin())
                           : AddQuantity(model.setup, tilt);
   }

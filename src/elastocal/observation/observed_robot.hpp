@@ -14,94 +14,96 @@
 
 namespace elastocal {
 
-/// What one instrument showed in one posture.
+/// Measurement of one instrument in one posture.
 struct Observation {
   int posture = 0;                ///< row of Observations::q
-  int instrument = 0;             ///< of the setup
-  Eigen::VectorXd measured = {};  ///< as the kind of the instrument has it
-  std::vector<int> effects = {};  ///< of Observations::effects that act on its quantities
+  int instrument = 0;             ///< index in the setup
+  Eigen::VectorXd measured = {};  ///< numbers in the order of the kind of instrument
+  std::vector<int> effects = {};  ///< indices of Observations::effects that act on its quantities
 };
 
-/// A quantity that differs between sessions: between two of them the robot has been started anew,
-/// or the table been moved a little. The effect is added to the quantity.
+/// Effect of a session on a quantity, which is added to the quantity. Between two sessions the
+/// robot was started anew, or the table was displaced a little.
 struct SessionEffect {
   int quantity = 0;
   std::string name;
 };
 
-/// Where a posture was read.
+/// File and line from which a posture was read.
 struct PosturePlace {
-  int file = 0;  ///< of Observations::files
-  int line = 0;  ///< of the file
+  int file = 0;  ///< index in Observations::files
+  int line = 0;  ///< line of the file
 };
 
-/// All that was observed, with the positions of all joints.
+/// All observations, with the positions of all joints.
 struct Observations {
   std::vector<std::string> files = {};
   std::vector<SessionEffect> effects = {};
   std::vector<PosturePlace> postures = {};
   Eigen::MatrixXd q = {};         ///< postures x coordinates of the tree, rad or m
-  Eigen::MatrixXd approach = {};  ///< see Recording::approach; no rows: nothing known
+  Eigen::MatrixXd approach = {};  ///< see Recording::approach; without rows: unknown
   std::vector<Observation> all = {};
 
   int posture_count() const { return static_cast<int>(postures.size()); }
   int count() const { return static_cast<int>(all.size()); }
 };
 
-/// The robot as its instruments see it. Its reference frame is that of the root link; the first
-/// legs of `robot` are the feet, the following ones the links that are observed.
+/// Model of the robot and its instruments. The reference frame is that of the root link. The first
+/// legs of `robot` are the feet, the following ones the observed links.
 struct ObservedRobot {
   ErrorModel robot;
   ObservationSetup setup;
-  /// By parameter of the robot: which unknown it is; -1: it stays nominal (T0 and what is held).
-  /// Parameters in common have the same one.
+  /// Unknown of each parameter of the robot; -1: it stays nominal (T0 and held parameters).
+  /// Parameters in common have the same unknown.
   std::vector<int> unknown;
   int unknown_count = 0;
   std::vector<int> leg_of_link;  ///< by link of the tree; -1: not observed, or fixed to the root
-  int root_tilt = -1;            ///< quantity: of a root link that is held still; -1: on feet
-  /// What an earlier calibration says of the robot: of its parameters it is the prior, instead of
-  /// deviations from nominal by kind.
+  int root_tilt = -1;  ///< quantity with the tilt of a root link that is held still; -1: on feet
+  /// Earlier calibration of the robot. For its parameters it is the prior, instead of deviations
+  /// from nominal by kind.
   EarlierEstimate earlier = {};
 
   const Instrument& instrument(int index) const {
     return *setup.instruments[static_cast<std::size_t>(index)];
   }
-  /// Whether an instrument is a plate that touches flush, and then `setup.plates[index]`.
+  /// Whether an instrument is a plate that touches flush; its description is then
+  /// `setup.plates[index]`.
   bool IsPlate(int index) const { return index < static_cast<int>(setup.plates.size()); }
 };
 
-/// `torsion`, `bending`: joints that give way; `corrections`: of joints, of a root link that is
-/// held still and of loads (ObservableCorrections). Throws InputError for patterns
-/// that match nothing, and for parameters in common of different kinds.
+/// Makes the model of an observed robot. `torsion` and `bending` name the elastic joints.
+/// `corrections` are those of joints, of a root link that is held still and of loads
+/// (ObservableCorrections). Throws InputError for patterns that match nothing, and for parameters
+/// in common of different kinds.
 ObservedRobot MakeObservedRobot(const RobotTree& tree, const PlacementOptions& placement,
                                 const ObservationSetup& setup, const std::vector<int>& torsion,
                                 const std::vector<int>& bending,
                                 const std::vector<Correction>& corrections = {});
 
-/// Leaves out of the estimate the parameters of joints that move no foot and nothing observed.
+/// Excludes from the estimate the parameters of joints that move no foot and nothing observed.
 void KeepObservedUnknowns(const Observations& observations, ObservedRobot& model);
 
-/// The source of a parameter of the robot's, and the unit in which its deviation counts there (1,
-/// but for compliances: how far joints give way under their largest torque; and corrections: their
-/// typical size).
+/// Source of a parameter of the robot, and the unit in which its deviation counts there: 1; for
+/// compliances the one that gives the typical deflection under the joint's largest torque; for
+/// corrections their typical size.
 struct SourceOfParameter {
   int source = kLength;
   double unit = 1.0;
 };
 
-/// One for each parameter of the robot; those of T0 have no meaning.
+/// One entry for each parameter of the robot; those of T0 have no meaning.
 std::vector<SourceOfParameter> SourcesOfParameters(const ObservedRobot& model);
 
-/// By unknown of the robot the first of its parameters.
+/// The first parameter of each unknown of the robot.
 std::vector<int> ParameterOfUnknown(const ObservedRobot& model);
 
-/// Fills `approach` from the order of the rows of each file, as NoteApproach of a Recording.
+/// Fills `approach` from the order of the rows in each file, as NoteApproach of a Recording.
 void NoteApproach(Observations& observations);
 
-/// The observations in some postures, which keep their order.
+/// The observations in some postures, in the same order.
 Observations SelectPostures(const Observations& observations, const std::vector<int>& postures);
 
-/// All but these observations; postures that show nothing else are left out.
+/// The observations without those in `out`; postures without any other observation are left out.
 Observations WithoutObservations(const Observations& observations, const std::set<int>& out);
 
 }  // namespace elastocal

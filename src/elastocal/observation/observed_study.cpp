@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-/// Where the entries of x stand among the columns of a study; -1: a compliance at zero.
+/// Column of the study for each entry of x; -1: a compliance at zero.
 std::vector<int> PlaceColumns(const ObservedRobot& wide, const ObservedRobot& model,
                               const ObservationResiduals& residuals, const Eigen::VectorXd& x,
                               LinearStudy& study) {
@@ -17,7 +17,7 @@ std::vector<int> PlaceColumns(const ObservedRobot& wide, const ObservedRobot& mo
     if (x[entry] <= kComplianceAtZero) columns[static_cast<std::size_t>(entry)] = -1;
   }
   const auto known = NamedErrors(model.robot, Eigen::VectorXd::Zero(model.robot.parameter_count()));
-  std::vector<std::pair<std::size_t, int>> candidates;  // entry, parameter
+  std::vector<std::pair<std::size_t, int>> candidates;  // entry of x, parameter
   for (int i = 0; i < wide.robot.parameter_count(); ++i) {
     if (wide.robot.parameters[i].kind != ParameterKind::kCorrection) continue;
     if (wide.unknown[i] < 0 || known.contains(wide.robot.parameters[i].name)) continue;

@@ -5,8 +5,8 @@
 
 namespace elastocal {
 
-/// A point of a link at a known distance [m] from a plane that does not move: a tip that touches a
-/// table or a wall (distance 0), or a height gauge, which shows one coordinate.
+/// A point of a link at a known distance [m] from a fixed plane: a tip that touches a table or a
+/// wall (distance 0), or a height gauge, which shows one coordinate.
 ///
 /// Quantities: the plane; the position of the point on its link, as displacement from the origin
 /// [m].
@@ -17,7 +17,7 @@ class PlaneDistance : public Instrument {
   int measured_size() const override { return 1; }
   ObservationResidual Evaluate(const Sight& sight, const Eigen::VectorXd& measured) const override;
   Eigen::VectorXd Predict(const Sight& sight) const override;
-  /// The plane's pivot is the mean of where the nominal robot has the point, less the distances.
+  /// Sets the plane's pivot to the mean of the nominal positions of the point, minus the distances.
   void Begin(const std::vector<Sight>& sights, const std::vector<Eigen::VectorXd>& measured,
              std::vector<QuantityValue*>& values) const override;
 };

@@ -7,7 +7,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kNearest = 0.1;  // m
-constexpr double kFacing = 0.2;   // cosine of the flattest angle of view
+constexpr double kFacing = 0.2;   // cosine of the largest angle between line of sight and normal
 
 }  // namespace
 
@@ -41,7 +41,7 @@ ObservationResidual SeenTag::Evaluate(const Sight& sight, const Eigen::VectorXd&
     seen.left.segment<2>(row) = pixel.at - measured.segment<2>(row);
     by_tag_link.middleRows<2>(row) = pixel.by_point * view.by_point_screw;
     by_camera.middleRows<2>(row) = pixel.by_point * view.by_frame;
-    // A displacement of the point in the axes of the tag's parent.
+    // Displacement of the point in the axes of the tag's parent.
     const Eigen::Matrix<double, 2, 3> by_point =
         pixel.by_point * view.by_point_screw.rightCols<3>() * T_floor_tag_parent.linear();
     by_tag.middleRows<2>(row) << by_point, -by_point * Skew(arm) * tag_turns;

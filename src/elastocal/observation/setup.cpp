@@ -18,7 +18,7 @@ namespace {
 
 using Role = Source::Role;
 
-/// A source of `sd`, or the unknown one where that is 0.
+/// A source with standard deviation `sd`, or the unknown one where that is 0.
 int PriorSource(ObservationSetup& setup, const std::string& name, SourceUnit unit, double sd) {
   if (sd <= 0.0) return unit == SourceUnit::kRadian ? kUnknownTurn : kUnknownPlace;
   return AddSource(setup, {name, unit, sd, Role::kFixed});
@@ -28,7 +28,7 @@ int AddNoise(ObservationSetup& setup, const std::string& name, SourceUnit unit, 
   return AddSource(setup, {name, unit, sd, Role::kNoise});
 }
 
-/// Where a point is on its link.
+/// Adds the position of a point on its link.
 int AddMountedPoint(ObservationSetup& setup, const std::string& name, const Eigen::Vector3d& p_link,
                     double sd) {
   Quantity point{name + ".point", {}, false};
@@ -37,7 +37,7 @@ int AddMountedPoint(ObservationSetup& setup, const std::string& name, const Eige
   return AddQuantity(setup, std::move(point));
 }
 
-/// How a frame sits on its link or, `of_surroundings`, on the floor.
+/// Adds the pose of a frame on its link or, with `of_surroundings`, on the floor.
 int AddMountedFrame(ObservationSetup& setup, const std::string& name, const Transform& nominal,
                     double sd_m, double sd_rad, bool of_surroundings) {
   Quantity mount{name + ".mounting", {}, of_surroundings};
@@ -203,8 +203,8 @@ MountedTag AddTag(ObservationSetup& setup, const TagSetup& of) {
 
 namespace {
 
-/// Orthonormal combinations of the corners' u, v (8 x 8): twice their means, then what they differ
-/// by.
+/// Orthonormal combinations of the corners' u, v (8 x 8): twice their means, then their
+/// differences.
 Eigen::MatrixXd MeanAndRest() {
   Eigen::Matrix4d of_corners;
   of_corners << 1, 1, 1, 1,  //

@@ -11,52 +11,54 @@
 
 namespace elastocal {
 
-/// A foot that stands on the floor in every posture and does not move.
+/// A foot that stands on the floor without moving in every posture.
 struct ContactFoot {
   int link = 0;
-  /// Where it stands; the floor's frame is where the first foot stands, z up.
+  /// Pose of the foot. The floor's frame is that of the first foot, z up.
   Transform T_floor_foot = Transform::Identity();
-  double share = 0.5;  ///< of the weight
+  double share = 0.5;  ///< share of the weight
 };
 
-/// A plate of the robot and the table that it touches: one table for each plate.
+/// A plate of the robot and the table that it touches; each plate has its own table.
 struct ContactPlate {
   std::string name;
   int link = 0;
   PlateFace face = {};
 };
 
-/// How a robot stands, and by what it is observed. Instruments, quantities and sources are added by
-/// the functions below.
+/// How a robot stands, and what observes it. Instruments, quantities and sources are added by the
+/// functions below.
 struct ObservationSetup {
-  /// None: the root link is held still, level but for a small unknown tilt, and is the floor's
-  /// frame.
+  /// Empty: the root link is held still, level except for a small unknown tilt, and its frame is
+  /// the floor's frame.
   std::vector<ContactFoot> feet = {};
-  std::vector<ContactPlate> plates = {};  ///< they are the first instruments
+  std::vector<ContactPlate> plates = {};  ///< the first instruments
   std::vector<std::shared_ptr<const Instrument>> instruments = {};
   std::vector<Quantity> quantities = {};
   std::vector<Source> sources = CommonSources();
-  /// Patterns of parameters that have one value in common, such as the compliance of both hips.
+  /// Patterns of parameters with one value in common, such as the compliance of both hips.
   std::vector<std::vector<std::string>> common = {};
   std::vector<std::string> hold = {};  ///< patterns of parameters that stay nominal
-  double outlier_probability = 0.01;   ///< that postures without a single outlier have one named
+  /// Probability that an outlier is named in postures without any.
+  double outlier_probability = 0.01;
 };
 
-/// Index of a new source.
+/// Adds a source and returns its index.
 int AddSource(ObservationSetup& setup, Source source);
 
-/// Index of a new quantity.
+/// Adds a quantity and returns its index.
 int AddQuantity(ObservationSetup& setup, Quantity quantity);
 
-/// A plate that touches a table flush (FlushContact). Throws std::invalid_argument after other
-/// instruments.
+/// Adds a plate that touches a table flush (FlushContact). Throws std::invalid_argument if other
+/// instruments were added before.
 void AddPlate(ObservationSetup& setup, const ContactPlate& plate);
 
-/// Common to the descriptions below: `link` sees, `p_link` or `T_link` is nominal and uncertain by
-/// `mounting_sd`, `noise_sd` is a first guess (the data decide).
+/// In the descriptions below, `link` carries what is observed, `p_link` or `T_link` is nominal and
+/// uncertain by `mounting_sd`, and `noise_sd` is a first guess (the data decide).
 
-/// The plane of a table, a wall or a gauge's reference: its normal is nominally `normal` and
-/// uncertain like a table's (kTableTilt), its place unknown. Index of the quantity.
+/// Adds the plane of a table, of a wall or of a gauge's reference, and returns the index of its
+/// quantity. Its normal is nominally `normal` with the uncertainty of a table (kTableTilt); its
+/// place is unknown.
 int AddPlane(ObservationSetup& setup, const std::string& name,
              const Eigen::Vector3d& normal = Eigen::Vector3d::UnitZ());
 
@@ -64,13 +66,14 @@ struct PlaneDistanceSetup {
   std::string name;
   int link = 0;
   Eigen::Vector3d p_link = Eigen::Vector3d::Zero();  ///< m
-  int plane = 0;                                     ///< quantity, see AddPlane
+  int plane = 0;                                     ///< index of the quantity, see AddPlane
   double mounting_sd = 1e-3;                         ///< m
   double noise_sd = 1e-3;                            ///< m
 };
 void AddPlaneDistance(ObservationSetup& setup, const PlaneDistanceSetup& of);
 
-/// A tracker that nobody knows the place of; `carrier`: link that carries it, -1: the floor does.
+/// A tracker at an unknown place. `carrier` is the link that carries it; -1: it stands on the
+/// floor.
 struct Tracker {
   int quantity = 0, carrier = -1;
 };
@@ -83,7 +86,7 @@ struct TrackedPointSetup {
   Tracker tracker = {};
   double mounting_sd = 0.0;  ///< m; 0: unknown (1 m)
   double noise_sd = 1e-3;    ///< m
-  int noise = -1;            ///< source that several have in common; -1: its own
+  int noise = -1;            ///< index of a source that several have in common; -1: its own
 };
 void AddTrackedPoint(ObservationSetup& setup, const TrackedPointSetup& of);
 
@@ -93,9 +96,10 @@ struct TrackedBodySetup {
   Transform T_link = Transform::Identity();
   Tracker tracker = {};
   double mounting_sd_m = 0.0, mounting_sd_rad = 0.0;  ///< 0: unknown (1 m, 1 rad)
-  double position_sd = 1e-3, rotation_sd = 2e-3;      ///< of the noise, m and rad
-  /// Of position [m] and rotation vector [rad] in the order and axes of TrackedBody, known up to a
-  /// factor, which the data decide; empty: position and rotation have a standard deviation each.
+  double position_sd = 1e-3, rotation_sd = 2e-3;      ///< noise, m and rad
+  /// Covariance of position [m] and rotation vector [rad] in the order and axes of TrackedBody, up
+  /// to a factor, which the data decide. Empty: position and rotation have a standard deviation
+  /// each.
   Eigen::MatrixXd covariance = {};
 };
 /// Throws std::invalid_argument for a covariance that is not positive definite.
@@ -115,11 +119,12 @@ void AddInertialUnit(ObservationSetup& setup, const InertialUnitSetup& of);
 struct WireSetup {
   std::string name;
   int link = 0;
-  Eigen::Vector3d p_link = Eigen::Vector3d::Zero();   ///< m
-  Eigen::Vector3d p_floor = Eigen::Vector3d::Zero();  ///< the fixed point, roughly, m
-  double anchor_sd = 0.1, zero_sd = 0.01;             ///< m
-  double mounting_sd = 1e-3;                          ///< m
-  double noise_sd = 1e-3;                             ///< m
+  Eigen::Vector3d p_link = Eigen::Vector3d::Zero();  ///< m
+  /// Approximate position of the fixed point, m.
+  Eigen::Vector3d p_floor = Eigen::Vector3d::Zero();
+  double anchor_sd = 0.1, zero_sd = 0.01;  ///< m
+  double mounting_sd = 1e-3;               ///< m
+  double noise_sd = 1e-3;                  ///< m
 };
 void AddWire(ObservationSetup& setup, const WireSetup& of);
 
@@ -127,7 +132,7 @@ void AddWire(ObservationSetup& setup, const WireSetup& of);
 struct CameraSetup {
   std::string name;
   int link = -1;
-  Transform T_parent = Transform::Identity();  ///< of the camera, nominal
+  Transform T_parent = Transform::Identity();  ///< nominal pose of the camera
   Camera camera = {};
   double mounting_sd_m = 0.05, mounting_sd_rad = 0.1;
   double focal_sd = 0.01, centre_sd = 0.01;  ///< relative to the focal lengths
@@ -136,28 +141,29 @@ struct CameraSetup {
 };
 struct MountedCamera {
   CameraSetup of;
-  int pose = 0, numbers = 0;  ///< quantities
-  /// Sources: of a corner beside the others of its tag, and of what the corners of a tag have in
-  /// common in one image, where errors of the robot show that nothing models.
+  int pose = 0, numbers = 0;  ///< indices of quantities
+  /// Sources of noise: `noise` of a corner relative to the others of its tag; `shared` of all
+  /// corners of a tag in one image, where errors of the robot show that no model describes.
   int noise = 0, shared = 0;
 };
 MountedCamera AddCamera(ObservationSetup& setup, const CameraSetup& of);
 
-/// A square tag on a link, or on the floor (`link` -1): x to the right, y up, z out of it.
+/// A square tag on a link, or on the floor (`link` -1). Its x axis points to the right, y up, z out
+/// of the tag.
 struct TagSetup {
   std::string name;
   int link = -1;
-  Transform T_parent = Transform::Identity();  ///< of the tag's centre, nominal
+  Transform T_parent = Transform::Identity();  ///< nominal pose of the tag's centre
   double size = 0.05;                          ///< edge between the corners, m
   double mounting_sd_m = 0.05, mounting_sd_rad = 0.1;
 };
 struct MountedTag {
   TagSetup of;
-  int pose = 0;  ///< quantity
+  int pose = 0;  ///< index of the quantity
 };
 MountedTag AddTag(ObservationSetup& setup, const TagSetup& of);
 
-/// What the camera sees of the tag: an instrument of the name "camera/tag".
+/// Adds the observation of the tag by the camera: an instrument named "camera/tag".
 void AddSeenTag(ObservationSetup& setup, const MountedCamera& camera, const MountedTag& tag);
 
 }  // namespace elastocal

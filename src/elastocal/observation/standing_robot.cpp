@@ -13,14 +13,14 @@
 namespace elastocal {
 namespace {
 
-constexpr double kFlat = 20.0 * M_PI / 180.0;  // more than any robot errs
+constexpr double kFlat = 20.0 * M_PI / 180.0;  // more than the errors of any robot
 constexpr int kFewestUpside = 3;               // postures
 constexpr double kClosed = 1e-4;               // m
 constexpr double kClosedAngle = 0.01 * M_PI / 180.0;
 
 double DegreesOf(double angle) { return angle * 180.0 / M_PI; }
 
-/// The root link on the floor by the nominal robot; without feet it is held still.
+/// Pose of the root link on the floor by the nominal robot; without feet it is held still.
 Transform NominalRoot(const ObservationSetup& setup, const std::vector<Transform>& T_root_link) {
   if (setup.feet.empty()) return Transform::Identity();
   std::vector<StandingFoot> feet;
@@ -30,7 +30,7 @@ Transform NominalRoot(const ObservationSetup& setup, const std::vector<Transform
   return PlaceRootOnFeet(feet).T_floor_root;
 }
 
-/// By plate the angle between its normal and the vertical by the nominal robot.
+/// For each plate: angle between its normal and the vertical by the nominal robot.
 std::vector<double> NominalTilts(const RobotTree& tree, const ObservationSetup& setup,
                                  const Eigen::VectorXd& q) {
   const std::vector<Transform> T = LinkTransforms(tree, q);
@@ -92,7 +92,8 @@ std::vector<int> FindTouchingPlates(const RobotTree& tree, const ObservationSetu
                                     const Eigen::MatrixXd& q, const std::string& source) {
   std::vector<int> touching;
   Eigen::VectorXd least(q.rows());
-  std::vector<int> flat(setup.plates.size(), 0), upside(setup.plates.size(), 0);  // postures
+  // Numbers of postures.
+  std::vector<int> flat(setup.plates.size(), 0), upside(setup.plates.size(), 0);
   for (Eigen::Index i = 0; i < q.rows(); ++i) {
     const std::vector<double> tilts = NominalTilts(tree, setup, q.row(i));
     const auto flattest = std::min_element(tilts.begin(), tilts.end());

@@ -15,16 +15,16 @@ namespace elastocal {
 namespace {
 
 constexpr double kExplained = 3.5;  // standard deviations of a prediction
-constexpr double kHighAbove = 5.0;  // times the noise: half of those in the air
-constexpr double kNoiseLeft = 0.5;  // of the noise with all touches
+constexpr double kHighAbove = 5.0;  // in units of the noise: median height of those in the air
+constexpr double kNoiseLeft = 0.5;  // ratio to the noise with all touches
 constexpr double kNoiseThatMatters =
     1e-3;  // m, with all touches: below, none is high enough to matter
-constexpr double kFewestShare = 1.0 / 3.0;  // of the touches, that lie on the tables
+constexpr double kFewestShare = 1.0 / 3.0;  // share of the touches that lie on the tables
 constexpr int kFewestTouchesTold = 8;
 constexpr int kMostRounds = 12;
-constexpr double kStartShares[] = {0.5, 0.3};  // of the touches of a plate, closest together
+constexpr double kStartShares[] = {0.5, 0.3};  // share of a plate's touches, closest together
 
-/// The observations that are touches.
+/// Indices of the observations that are touches.
 std::vector<int> TouchesAmong(const ObservedRobot& model, const Observations& observations) {
   std::vector<int> touches;
   for (int i = 0; i < observations.count(); ++i) {
@@ -53,7 +53,7 @@ class AirSearch {
   }
 
  private:
-  /// By touch: its height over the table.
+  /// For each touch: its height above the table.
   std::vector<double> HeightsOf(const ObservationFit& fit) const {
     const std::vector<Eigen::VectorXd> left = LeftOf(model_, observations_, fit.values);
     std::vector<double> heights;
@@ -61,7 +61,7 @@ class AirSearch {
     return heights;
   }
 
-  /// Of each plate the share of its touches whose heights are closest together; by touch.
+  /// For each plate: marks the given share of its touches whose heights are closest together.
   std::vector<char> Closest(const std::vector<double>& heights, double share) const {
     std::vector<char> closest(touches_.size(), 0);
     for (int plate = 0; plate < static_cast<int>(model_.setup.plates.size()); ++plate) {
@@ -94,8 +94,8 @@ class AirSearch {
     return FitObservations(model_, observations_, start, {});
   }
 
-  /// By touch: the standard deviation of the difference between its height and what a fit to the
-  /// touches of `on` predicts; of these themselves that of the noise.
+  /// For each touch: standard deviation of its height minus the prediction by a fit to the touches
+  /// marked in `on`; for these themselves that of the noise.
   std::vector<double> Doubts(const ObservationFit& fit, const std::vector<char>& on) const {
     ObservationResiduals told(model_, observations_, fit.loads, fit.spread, fit.weights, {},
                               fit.values);
@@ -113,7 +113,8 @@ class AirSearch {
     return doubts;
   }
 
-  /// From touches that seem to lie on their tables to all that are explained by those.
+  /// Repeats the fit, starting from touches that seem to lie on their tables, and adds all touches
+  /// that it explains.
   void Try(std::vector<char> on) {
     std::set<std::vector<char>> seen;
     for (int round = 0; round < kMostRounds && seen.insert(on).second; ++round) {
@@ -130,7 +131,8 @@ class AirSearch {
     }
   }
 
-  /// Takes what stays out, if it is in the air and leaves less noise than what was found before.
+  /// Takes the touches that stay out, if they are in the air and less noise is left than with those
+  /// found before.
   void Judge(const std::vector<char>& on, const std::vector<double>& heights, double noise) {
     std::vector<TouchInTheAir> air;
     std::vector<double> high;
@@ -152,7 +154,7 @@ class AirSearch {
   const Observations& observations_;
   std::vector<int> touches_;
   double noise_ = 0.0;  // of heights, with all touches
-  double least_ = 0.0;  // without the best
+  double least_ = 0.0;  // of heights, without the touches in `best_`
   std::vector<TouchInTheAir> best_;
 };
 

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 constexpr double kArm =
     0.1;  // m: of the points that stand for a pose where a tracker is registered
 
-/// What carries the tracker, on the floor.
+/// Pose on the floor of what carries the tracker.
 Transform CarrierOf(const Sight& sight) {
   return sight.T_floor_link.size() > 1 ? sight.T_floor_link[1] : Transform::Identity();
 }
@@ -22,7 +22,7 @@ FrameView ViewOf(const Sight& sight, const Vector3d& p_floor) {
   return ViewFrom(CarrierOf(sight), sight.values[0], p_floor);
 }
 
-/// By the screws of all links that it sees, given that of the link that moves.
+/// Derivatives by the screws of all links, from that by the screw of the moving link.
 std::vector<ByScrew> ByLinks(const Sight& sight, const ByScrew& by_screw) {
   if (sight.T_floor_link.size() > 1) return {by_screw, -by_screw};
   return {by_screw};

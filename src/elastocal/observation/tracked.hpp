@@ -6,11 +6,11 @@
 namespace elastocal {
 
 /// Instruments whose numbers are in the frame of a tracker (cameras of a motion capture system, a
-/// laser tracker) that stands still on the floor or is carried by a link. Their first quantity is
-/// the pose of the tracker's frame on the floor or in that link; where a link carries it, that is
-/// the second of `links`.
+/// laser tracker). The tracker stands on the floor or is carried by a link. Their first quantity is
+/// the pose of the tracker's frame on the floor or in that link, which is then the second of
+/// `links`.
 
-/// Position of a point (a marker, a reflector) of a link, m: measured are x, y, z.
+/// Position of a point (a marker, a reflector) of a link. It measures x, y, z, m.
 ///
 /// Quantities: the tracker's pose; the position of the point on its link, as displacement from the
 /// origin [m].
@@ -27,9 +27,9 @@ class TrackedPoint : public Instrument {
                     Landmarks& landmarks) const override;
 };
 
-/// Pose of a rigid body that is fixed to a link: measured are the position [m] and the unit
-/// quaternion x, y, z, w. Left are the position in the tracker's axes [m] and the rotation vector
-/// from the measured to the predicted attitude in the body's axes [rad].
+/// Pose of a rigid body that is fixed to a link. It measures the position [m] and the unit
+/// quaternion x, y, z, w. The residual is the position in the tracker's axes [m], then the rotation
+/// vector from the measured to the predicted attitude in the body's axes [rad].
 ///
 /// Quantities: the tracker's pose; the body's pose in the link.
 class TrackedBody : public Instrument {

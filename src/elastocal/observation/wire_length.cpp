@@ -8,7 +8,7 @@ Eigen::Vector3d HookOf(const Sight& sight) {
   return sight.T_floor_link[0] * (sight.values[1].origin.translation() + sight.values[1].x);
 }
 
-/// From the fixed point to the hook.
+/// Vector from the fixed point to the hook.
 Eigen::Vector3d WireOf(const Sight& sight) {
   return HookOf(sight) - sight.values[0].origin.translation() - sight.values[0].x.head<3>();
 }

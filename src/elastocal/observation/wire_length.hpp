@@ -5,11 +5,11 @@
 
 namespace elastocal {
 
-/// A draw wire: measured is the distance of a point of a link to a fixed point, m, counted from an
-/// unknown zero.
+/// A draw wire. It measures the distance of a point of a link to a fixed point, m, from an unknown
+/// zero.
 ///
-/// Quantities: the fixed point, as displacement from the origin on the floor [m], and the zero that
-/// is added to the distance [m]: 4 numbers; the position of the point on its link, as displacement
+/// Quantities: 4 numbers, the fixed point as displacement from the origin on the floor [m] and the
+/// zero that is added to the distance [m]; the position of the point on its link, as displacement
 /// from the origin [m].
 class WireLength : public Instrument {
  public:

@@ -38,10 +38,9 @@
 namespace elastocal {
 namespace {
 
-constexpr int kElasticityFolds = 10;  // of the choice of elasticity
+constexpr int kElasticityFolds = 10;  // folds for the choice of elasticity
 
-/// By what the data, and those of an earlier calibration, tell before the prior, the waist being
-/// free in trials.
+/// Excitation by the data, and by those of an earlier calibration. The waist of trials is free.
 Excitation ExcitationOf(const CalibrationResult& result, const BaseParameters& base,
                         const Recording& recording, const EarlierEstimate& earlier) {
   const std::vector<int>& fitted = result.posterior.parameters;
@@ -56,7 +55,7 @@ Excitation ExcitationOf(const CalibrationResult& result, const BaseParameters& b
   U *= root.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(U.cols(), result.model.parameter_count());
   factor(Eigen::all, fitted) = result.marker_sd * U.transpose();
-  // Of the geometry: whether a compliance was excited, its loads say (see unsupported parameters).
+  // Geometric parameters only: the excitation of a compliance depends on the loads.
   std::vector<int> geometric;
   for (int i : base.kept) {
     if (IsElastic(result.model.parameters[i].kind)) continue;
@@ -65,8 +64,8 @@ Excitation ExcitationOf(const CalibrationResult& result, const BaseParameters& b
   return AssessExcitation(factor, geometric, recording.posture_count(), result.marker_sd);
 }
 
-/// The error of the waist by model, on trials for validation where there are any, else on those of
-/// the estimate.
+/// Error of the waist by model, on trials for validation if there are any, else on those of the
+/// estimate.
 ByModel<double> WaistErrors(const ModelComparison& comparison, const Measurements& measured,
                             const CalibrationOptions& settings) {
   ByModel<double> errors;
@@ -85,7 +84,7 @@ ByModel<double> WaistErrors(const ModelComparison& comparison, const Measurement
   return errors;
 }
 
-/// Where the root link's frame is; the rigid model is displaced as the full one.
+/// Gives all models their gauge. The rigid model is displaced as the full one.
 void GiveGauge(const CalibrationOptions& settings, ModelComparison& comparison) {
   const CalibrationResult& largest = comparison.largest();
   const Transform displacement = FindRootDisplacement(settings.gauge, largest.model, largest.delta);
@@ -101,7 +100,7 @@ Progress OfStep(const StepProgress& progress, const std::string& step) {
   return [progress, step](int done, int total) { progress(step, done, total); };
 }
 
-/// Ten for a table of postures, unless it is very large; of few postures one each.
+/// Ten folds for a posture table that is not very large; one each for few postures.
 int UsualFolds(const Recording& recording) {
   if (!recording.trials.empty() || recording.posture_count() > 2000) return 0;
   const int folds = FoldsFor(recording, 10);
@@ -112,14 +111,14 @@ void Append(const std::vector<std::string>& more, std::vector<std::string>& warn
   warnings.insert(warnings.end(), more.begin(), more.end());
 }
 
-/// What the steps of a calibration work on.
+/// State of a calibration, on which its steps work.
 struct Work {
   const Project& given;
   const std::vector<std::filesystem::path>& recordings;
   const ExperimentOptions& options;
-  Project project;           ///< `given` with the elasticity and the causes that were chosen
-  Measurements measured;     ///< with markers split where they were knocked
-  Measurements as_recorded;  ///< before
+  Project project;           ///< `given` with the chosen elasticity and causes
+  Measurements measured;     ///< with separate markers before and after a knock
+  Measurements as_recorded;  ///< as read
   RecordedModel robot;
   CalibrationRun run;
   bool sound = true;  ///< nothing is plainly wrong with the recording
@@ -128,7 +127,7 @@ struct Work {
   const Recording& recording() const { return measured.calibration; }
 };
 
-/// By the contents of its files, whatever they are called this time.
+/// Compares the contents of files, not their names.
 void WarnOfSameRecording(Work& work) {
   const std::filesystem::path calibration = FindCalibrationFiles(work.options.prior).calibration;
   if (!IsOwnRecording(calibration, InputFiles(work.given, work.recordings))) return;
@@ -137,9 +136,9 @@ void WarnOfSameRecording(Work& work) {
   if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(warning);
 }
 
-/// What is estimated: elasticity and causes as the data decide or, not in the paper, as an earlier
-/// calibration has them, which is also the prior. A recording that is plainly wrong decides
-/// nothing.
+/// Decides what is estimated. Elasticity and causes are chosen by the data or (not in the paper)
+/// taken from an earlier calibration, which is then also the prior. A recording that is plainly
+/// wrong decides nothing.
 void ChooseWhatIsEstimated(Work& work) {
   const ExperimentOptions& options = work.options;
   Project& project = work.project;
@@ -167,7 +166,7 @@ void ChooseWhatIsEstimated(Work& work) {
   run.extra = project.elasticity.extra;
 }
 
-/// Positions that are coarse or scattered, and a scale that no length tells.
+/// Warns of positions that are coarse or scattered, and of a scale that no length tells.
 void WarnOfWhatWasRecorded(Work& work) {
   CalibrationRun& run = work.run;
   const CalibrationResult& fit = run.comparison.largest();
@@ -193,7 +192,7 @@ void WarnOfWhatWasRecorded(Work& work) {
   }
 }
 
-/// Errors on postures that were left out; what the data chose, each fold chooses anew.
+/// Computes errors on held-out postures. Each fold chooses anew what the data chose.
 void CrossValidateRun(int folds, Work& work) {
   const ExperimentOptions& options = work.options;
   CalibrationRun& run = work.run;
@@ -227,8 +226,8 @@ void CrossValidateRun(int folds, Work& work) {
   if (!worse.empty()) run.warnings.push_back(worse);
 }
 
-/// Errors on trials for validation. Labels that are exchanged there for a while are left out; other
-/// contradictions are faults.
+/// Computes errors on trials for validation. Labels that are exchanged there for a while are left
+/// out; other contradictions are faults.
 void JudgeOnOtherTrials(Work& work) {
   CalibrationRun& run = work.run;
   const RepeatedTrials repeated = FindRepeatedTrials(work.measured);
@@ -249,7 +248,7 @@ void JudgeOnOtherTrials(Work& work) {
   }
 }
 
-/// Whether all this can be trusted, as a rigid URDF and with its elasticity.
+/// Judges whether the result can be trusted, as a rigid URDF and with its elasticity.
 void JudgeRun(Work& work) {
   CalibrationRun& run = work.run;
   const Recording& recording = work.recording();
@@ -268,7 +267,7 @@ void JudgeRun(Work& work) {
     JudgeHeldOut(run.held_out->table, run.comparison.largest_kind(), run.deployment.urdf_kind,
                  run.verdict);
   }
-  // What a mistake does to a fit is no other fault.
+  // Consequences of a named fault are no further objections.
   if (!run.faults.empty()) LeaveOutConsequences(run.verdict);
   if (!work.sound) run.verdict.objections.clear();
   run.verdict.objections.insert(run.verdict.objections.begin(), run.faults.begin(),
@@ -289,10 +288,10 @@ void JudgeRun(Work& work) {
 }
 
 /// Section 5.1, the measurements y^. Markers and the robot's log pass the same low-pass filter, get
-/// one clock, and are reduced to the samples at which the markers are stable: for every marker of a
-/// posture the same ones, so that none weighs more. The trials of all chains are joined.
+/// one clock, and are reduced to the samples at which the markers are stable, the same samples for
+/// all markers of a posture, so that all weigh the same. The trials of all chains are joined.
 ///
-/// Not in the paper: what is plainly wrong is named, and nothing is chosen or judged by it.
+/// Not in the paper: plain mistakes are named, and nothing is chosen or judged by them.
 void ReadWhatWasMeasured(Work& work) {
   work.project.measurement.accepted = work.options.accept;
   work.measured = ReadMeasurements(work.project, work.recordings);
@@ -301,9 +300,9 @@ void ReadWhatWasMeasured(Work& work) {
   work.sound = work.run.faults.empty();
 }
 
-/// Section 2, the model y(delta). Markers seen from the waist (eq. 2 and 3), on joints and legs
-/// that give way under their loads (eq. 5 and 6): delta is eq. 7. A QR decomposition of the
-/// regressor (eq. 4) over random postures tells which of it can be identified (section 2.1).
+/// Section 2, the model y(delta). Markers are seen from the waist (eq. 2 and 3), on joints and legs
+/// that deflect under their loads (eq. 5 and 6); delta is eq. 7. A QR decomposition of the
+/// regressor (eq. 4) over random postures tells which parameters can be identified (section 2.1).
 void MakeModel(Work& work) {
   work.as_recorded = work.measured;
   work.robot = MakeRecordedModel(work.project, work.options.seed, work.measured);
@@ -313,14 +312,14 @@ void MakeModel(Work& work) {
 }
 
 /// Section 5, eq. 14. One least-squares problem over all samples: find the delta that minimises
-/// |y^ - y(delta)|^2 while the pose F(q_i, delta) of the supporting foot stays what it was. Each
-/// residual is weighed by its standard deviation, which follows from the residuals, and a prior
-/// around the nominal robot takes the place of parameters held by hand.
+/// |y^ - y(delta)|^2 while the pose F(q_i, delta) of the supporting foot stays constant. Each
+/// residual is divided by its standard deviation, which is estimated from the residuals. A prior
+/// about the nominal robot replaces parameters held by hand.
 ///
 /// Section 6.1.4. Simpler models (not calibrated, geometric) on the same data.
 void Estimate(Work& work) {
   const RecordedModel& robot = work.robot;
-  // Not in the paper: places of markers that were measured are known beforehand.
+  // Not in the paper: measured positions of markers are prior knowledge.
   const std::vector<MarkerMeasurement> places =
       OpenMarkerPlaces(work.options.marker_places, work.project, work.as_recorded.calibration,
                        robot.knocks, work.run.warnings);
@@ -331,7 +330,7 @@ void Estimate(Work& work) {
                     work.settings(), OfStep(work.options.progress, "fit"));
 }
 
-/// The robot description with delta in it.
+/// Writes delta into the robot description.
 void MakeUrdf(Work& work) {
   CalibrationRun& run = work.run;
   run.zero_offsets = work.options.zero_offsets;
@@ -365,7 +364,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   MakeModel(work);
   Estimate(work);
 
-  // Not in the paper: what is wrong with the recording, by what the fit leaves.
+  // Not in the paper: finds mistakes of the recording from the residuals.
   if (work.sound) {
     run.faults = FindFaults(work.project, options.seed, work.as_recorded, work.robot,
                             work.recording(), run.comparison);
@@ -382,7 +381,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   JudgeOnOtherTrials(work);
   JudgeRun(work);
 
-  // Not in the paper: no measurement tells where the waist's frame is on the robot.
+  // Not in the paper: chooses the frame of the waist on the robot, which no measurement tells.
   GiveGauge(work.settings(), run.comparison);
   run.frames = AssessFrames(run.comparison.largest(), work.recording(), EndsOfLimbs(work.project));
   run.soles = KnownSoles(work.project, run.comparison.largest(), work.measured, options.prior);

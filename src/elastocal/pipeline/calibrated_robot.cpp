@@ -23,9 +23,9 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// An input of `calibrate` as runs.json has it.
+/// An input of `calibrate` as named in runs.json.
 struct RecordedInput {
-  fs::path file;  ///< from here
+  fs::path file;  ///< relative to the working directory
   std::string sha256;
 };
 
@@ -43,15 +43,14 @@ ordered_json RecordedRun(const fs::path& runs) {
   return Member(ParseJsonObject(runs.string(), ReadFile(runs)), "calibrate");
 }
 
-/// A file that a record names, from here: relative names start where calibrate was typed.
+/// Path of a file that a record names; relative names start in the folder where calibrate was run.
 fs::path FileOf(const ordered_json& run, const fs::path& file) {
   std::error_code error;
   const fs::path there = TextOf(run, "folder") / file;
   return file.is_relative() && !file.empty() && fs::exists(there, error) ? there : file;
 }
 
-/// The inputs of the calibration in a folder: project, URDF, then recordings. None where the record
-/// has none.
+/// The inputs of a calibration: project, URDF, then recordings. Empty where the record names none.
 std::vector<RecordedInput> RecordedInputs(const fs::path& runs) {
   const ordered_json run = RecordedRun(runs);
   std::vector<RecordedInput> inputs;
@@ -67,7 +66,7 @@ bool HasChanged(const RecordedInput& input) {
   return now.empty() || input.sha256 != now.front().sha256;
 }
 
-/// The project file that the record of a calibration names first, as it was then.
+/// Path of the project file that the record of a calibration names first.
 fs::path RecordedProject(const fs::path& folder) {
   const fs::path file = folder / "runs.json";
   const std::string hint = "; name the project file (--project; in Python, project=)";

@@ -27,7 +27,7 @@ HeldOutErrors HeldOutErrorsOf(const CalibrationRun& run) {
   return {.urdf = deployed.urdf, .compensated = best};
 }
 
-/// Of project and run together; adds to the run's warnings.
+/// Data of the report for project and run; adds to the run's warnings.
 std::string MakeReportData(const Project& project, CalibrationRun& run) {
   const CalibrationView view{.robot = MakeRobotView(project, run.warnings),
                              .clusters = MakeClusterViews(project),

@@ -12,28 +12,28 @@
 
 namespace elastocal {
 
-/// The names of the files that a calibration writes into its folder (docs/formats.md). Those for
-/// whoever deploys it: ROBOT_calibrated.urdf, calibration.yaml, offsets.xacro, covariance.csv; and
-/// those that tell how it went: summary.json, report_data.json.
+/// Names of the files that a calibration writes into its folder (docs/formats.md). To be deployed
+/// are ROBOT_calibrated.urdf, calibration.yaml, offsets.xacro and covariance.csv; summary.json and
+/// report_data.json tell how the calibration went.
 std::vector<std::string> CalibrationFileNames(const Project& project);
 
-/// The contents of these files by name. The first four are there only where the run is deployable.
-/// Adds to `run.warnings` what the report cannot show.
+/// Contents of these files by name. The first four exist only where the run is deployable. Adds to
+/// `run.warnings` what the report cannot show.
 std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
                                                         CalibrationRun& run);
 
 /// Where a calibration is stored.
 struct CalibrationFiles {
-  std::filesystem::path calibration;  ///< calibration.yaml
-  std::filesystem::path covariance;   ///< covariance.csv beside it; need not be there
+  std::filesystem::path calibration;  ///< path of calibration.yaml
+  std::filesystem::path covariance;   ///< path of covariance.csv beside it, which need not exist
 };
 
-/// The files of a calibration, given as the folder that calibrate wrote to (what a killed run left
-/// there is put in order first) or as its calibration.yaml. Throws InputError for a folder without
-/// calibration.yaml, and for one of two runs (CheckChecksums).
+/// Finds the files of a calibration, given as the folder that calibrate wrote to or as its
+/// calibration.yaml. First repairs what a killed run left in the folder. Throws InputError for a
+/// folder without calibration.yaml, and for a folder with files of two runs (CheckChecksums).
 CalibrationFiles FindCalibrationFiles(const std::filesystem::path& given);
 
-/// Reads both. Throws InputError naming file and line.
+/// Reads both files. Throws InputError that names file and line.
 CalibrationEstimate ReadCalibrationFiles(const CalibrationFiles& files);
 
 }  // namespace elastocal

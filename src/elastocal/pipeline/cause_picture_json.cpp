@@ -16,14 +16,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegreesARadian = 180.0 / M_PI;
 
-/// A quantity of a picture as people read it.
+/// An axis of a picture: its quantity with the unit that is shown to users.
 struct Axis {
   std::string what;
   const char* unit;
   double factor;
 };
 
-/// One unit of a cause that loads joints.
+/// Unit of a cause that loads joints.
 std::string UnitOfLoad(const Correction& correction) {
   const std::string link = correction.name.substr(0, correction.name.rfind('.'));
   const std::string axis(1, "xyz"[std::max(0, correction.axis)]);

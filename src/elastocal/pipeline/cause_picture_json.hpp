@@ -7,8 +7,9 @@
 
 namespace elastocal {
 
-/// What causes look like, for programs and for the report's page (docs/formats.md): name, words,
-/// what the displacement is of and against, units, points and curve, in the units of people.
+/// Pictures of causes as JSON, for programs and for the report's page (docs/formats.md): name,
+/// description, displaced quantity and variable, units, points and curve, in the units that are
+/// shown to users.
 nlohmann::ordered_json CausePicturesJson(const CauseReport& report);
 
 }  // namespace elastocal

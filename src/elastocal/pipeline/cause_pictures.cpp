@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kCurvePoints = 81, kMostPoints = 400;
 constexpr double kWorst = 4.0;     // times the median standard deviation
-constexpr double kNoShape = 1e-6;  // below it a posture does not show the cause
+constexpr double kNoShape = 1e-6;  // smallest shape with which a posture shows the cause
 
 std::size_t Nth(int index) { return static_cast<std::size_t>(index); }
 
@@ -38,7 +38,7 @@ CauseVariable VariableOf(CorrectionShape shape) {
   }
 }
 
-/// Whether two corrections displace the same by functions of the same variable.
+/// Whether two corrections displace the same thing by functions of the same variable.
 bool IsDrawnWith(const Correction& a, const Correction& b) {
   const bool same_moment = VariableOf(a.shape) != CauseVariable::kMoment || a.shape == b.shape;
   return a.joint == b.joint && a.axis == b.axis && a.source == b.source && same_moment &&
@@ -57,7 +57,7 @@ class Painter {
     for (const LinearStudy::Posture& posture : study.postures) sums_.Add(posture, 1.0);
   }
 
-  /// `taken`: causes that the estimate stands beside.
+  /// `taken` are the causes that the estimate contains.
   CausePicture Draw(const CauseFinding& finding, const std::vector<int>& taken) const {
     CausePicture picture;
     picture.finding = finding;
@@ -89,7 +89,8 @@ class Painter {
     return model_.elasticity.corrections[Nth(model_.parameters[Nth(parameter)].correction)];
   }
 
-  /// The surest parameter, and those that are drawn with it.
+  /// Chooses the parameter with the smallest relative standard deviation, and those that are drawn
+  /// with it.
   void Choose(CausePicture& picture) const {
     const CauseFinding& finding = picture.finding;
     std::size_t surest = 0;
@@ -122,7 +123,7 @@ class Painter {
                            : model_.tree.joints[Nth(correction.joint)].type == JointType::kRevolute;
   }
 
-  /// Where the joints give way most by the first parameter of the picture.
+  /// Chooses the joint that deflects most by the first parameter of the picture.
   void ChooseJoint(CausePicture& picture) const {
     double most = -1.0;
     for (int joint : model_.active_joints) {
@@ -145,7 +146,7 @@ class Painter {
     picture.is_angle = picture.driver_turns = joint.type == JointType::kRevolute;
   }
 
-  /// By how much one unit of a parameter displaces what the picture shows.
+  /// Displacement of what the picture shows by one unit of a parameter.
   double ShapeIn(const CausePicture& picture, int parameter, int posture) const {
     const auto correction = model_.parameters[Nth(parameter)].correction;
     const JointLoads& loads = loads_[Nth(posture)];
@@ -176,8 +177,8 @@ class Painter {
     }
   }
 
-  /// The derivative of a posture's residuals by the displacement is that by a parameter over its
-  /// function; of several parameters, by all of them.
+  /// The derivative of a posture's residuals by the displacement is the derivative by a parameter
+  /// over its shape function; with several parameters it is fitted to all of them.
   Point PointOf(int posture, const CausePicture& picture, const BaseFit& fit) const {
     const LinearStudy::Posture& rows = study_.postures[Nth(posture)];
     Eigen::VectorXd by_displacement = Eigen::VectorXd::Zero(rows.residual.size());

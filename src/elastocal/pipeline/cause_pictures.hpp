@@ -10,40 +10,40 @@
 
 namespace elastocal {
 
-/// What drives a cause.
+/// The variable on which a cause depends.
 enum class CauseVariable {
-  kPosition,  ///< of a joint, rad or m
-  kLoad,      ///< of a joint, N.m or N
-  kApproach,  ///< direction of the last motion, -1 or 1
-  kMoment,    ///< of the weight on the root link, N.m
+  kPosition,  ///< position of a joint, rad or m
+  kLoad,      ///< load on a joint, N.m or N
+  kApproach,  ///< direction of a joint's last motion, -1 or 1
+  kMoment,    ///< moment of the weight on the root link, N.m
   kTime,      ///< h
-  kAddedLoad  ///< on a joint, by one unit of the cause, N.m or N
+  kAddedLoad  ///< load on a joint by one unit of the cause, N.m or N
 };
 
-/// What a cause looks like: displacement of the joint (or of the root link, or of a marker) against
-/// what drives it. If the cause loads joints, it is the deflection of the joint that gives way
-/// most. The points are partial residuals (Larsen and McCleary 1972): the displacement that the
-/// cause has in a posture, and what that posture's own residuals ask for beside it.
+/// A cause drawn as displacement of its joint (or of the root link, or of a marker) over its
+/// variable. If the cause loads joints, the displacement is the deflection of the joint that
+/// deflects most. The points are partial residuals (Larsen and McCleary 1972): the displacement by
+/// the cause in a posture, plus what that posture's own residuals ask for beside it.
 struct CausePicture {
   CauseFinding finding;
-  /// Those of `finding.parameters` that are drawn: with one displacement and one variable.
+  /// The parameters of `finding` that are drawn: those with the same displacement and variable.
   std::vector<int> parameters;
-  int correction = 0;  ///< of the model, of the first of them
+  int correction = 0;  ///< index of the first one's correction in the model
   CauseVariable variable = CauseVariable::kPosition;
-  int joint = -1;             ///< whose position, load or motion is the variable; -1: of none
-  std::string driver, owner;  ///< name of that joint, and of the one displaced; empty: of none
-  bool is_angle = false;      ///< whether the displacement is in rad, and not in m
-  bool driver_turns = true;   ///< whether the driver is a revolute joint, and not a slide
-  int axis = 2;               ///< of the joint's deflection (JointLoads)
-  double compliance = 0.0;    ///< about it, as estimated, rad/(N.m) or m/N
+  int joint = -1;             ///< joint whose position, load or motion is the variable; -1: none
+  std::string driver, owner;  ///< name of that joint, and of the displaced one; empty: none
+  bool is_angle = false;      ///< the displacement is in rad; if false, in m
+  bool driver_turns = true;   ///< the driver is a revolute joint; if false, a prismatic one
+  int axis = 2;               ///< axis of the joint's deflection (JointLoads)
+  double compliance = 0.0;    ///< estimated compliance about it, rad/(N.m) or m/N
   std::vector<int> postures;
-  /// By posture: variable, displacement, and standard deviation of that by the noise of the
+  /// By posture: variable, displacement, and its standard deviation due to the noise of the
   /// markers.
   Eigen::VectorXd x, y, sd;
-  Eigen::VectorXd curve_x, curve_y;  ///< the cause as it was estimated
+  Eigen::VectorXd curve_x, curve_y;  ///< the cause as estimated
 };
 
-/// The robot in the postures of a study, without the causes.
+/// Configuration of the robot in the postures of a study, without the causes.
 struct CauseScene {
   const ErrorModel& wide;  ///< the model of the study
   Geometry geometry = {};
@@ -51,13 +51,14 @@ struct CauseScene {
   const Eigen::MatrixXd& q;            ///< postures x coordinates
 };
 
-/// That of a recording with markers.
+/// The scene of a recording with markers.
 CauseScene SceneOf(const ErrorModel& wide, const Recording& recording,
                    const CalibrationResult& result, const CalibrationOptions& options);
 
-/// At most `most` pictures: of the causes that were taken, each beside those before it, then of the
-/// others, the smallest p first, beside the calibration alone. Postures in which the displacement
-/// is known four times worse than in most are left out, and of very many only some are shown.
+/// Draws at most `most` causes: first those that were taken, each beside those before it, then the
+/// others beside the calibration alone, by ascending p. Postures whose displacement has more than
+/// four times the median standard deviation are left out, and of very many postures only some are
+/// shown.
 std::vector<CausePicture> DrawCauses(const LinearStudy& study, const CauseSearch& search,
                                      const CauseScene& scene, int most = 6);
 

@@ -26,14 +26,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// postures x markers, m
+/// Distances between measured and predicted positions by the fit, postures x markers, m.
 Eigen::MatrixXd DistancesBy(const EarlierFit& fit, const CalibrationOptions& options) {
   return Predict(fit.estimate.model, fit.estimate.delta, fit.measured.calibration, options)
       .distances;
 }
 
-/// Joints of which the calibration knows a play as large as what seems to have changed: the
-/// direction of approach may be other than the log tells.
+/// Names accused joints whose known play is as large as their apparent change: the direction of
+/// approach may differ from that in the log.
 std::vector<std::string> DescribePlay(const JointCheck& check, const StoredCalibration& earlier) {
   std::vector<JointSuspect> accused = check.moved;
   std::ranges::copy_if(check.joints, std::back_inserter(accused), [&](const JointSuspect& joint) {
@@ -60,7 +60,7 @@ std::vector<std::string> DescribePlay(const JointCheck& check, const StoredCalib
   return texts;
 }
 
-/// What `estimate` leaves: in all, and rms over the markers of each posture.
+/// Errors that `estimate` leaves: over all observations, and rms over the markers of each posture.
 void MeasureLeft(const EarlierFit& fit, const CalibrationOptions& options, CheckRun& run) {
   const auto seen = SeenMask(fit.measured.calibration);
   const Eigen::MatrixXd distances = DistancesBy(fit, options);
@@ -86,7 +86,7 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
     run.warnings.push_back(DescribeUndone(what));
   }
 
-  // Every joint free to have moved since the calibration.
+  // A fit in which every joint is free to have moved since the calibration.
   EarlierFit fit = FitAfterEarlier(calibration_file, options.days, measured, options.seed,
                                    options.joints, project);
   const Recording& postures = fit.measured.calibration;
@@ -94,7 +94,7 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
   run.left_before = fit.stored.rmse_3d;
   MeasureLeft(fit, project.calibration, run);
 
-  // The joints as calibrated.
+  // Fits with the joints as calibrated.
   const auto as_calibrated = [&](const RecordedModel& robot, const Recording& of) {
     return ValidateTransfer(robot.model, of, robot.base, project.calibration,
                             fit.stored.joint_errors);
@@ -141,7 +141,8 @@ bool CheckRun::plausible() const {
 
 double CheckRun::most_left() const {
   constexpr double kMore = 4.0;
-  constexpr double kMatters = 0.02;  // of what an uncalibrated robot errs by: below, it is little
+  // Share of the error of an uncalibrated robot below which an error is small.
+  constexpr double kMatters = 0.02;
   return left_before > 0.0 ? std::max(kMore * left_before, kMatters * expected_error)
                            : std::numeric_limits<double>::infinity();
 }

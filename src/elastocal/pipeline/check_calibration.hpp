@@ -16,36 +16,41 @@
 
 namespace elastocal {
 
-/// A few postures, and whether a calibration still explains them.
+/// Result of a check: a few postures, and whether a calibration still explains them.
 struct CheckRun {
   std::string calibration_file;
   Recording recording;
-  TransferValidation transfer;  ///< waist and markers fitted, the joints as calibrated
-  CalibrationResult estimate;   ///< the calibration as the prior, every joint free to have moved
-  double rmse_estimate = 0.0;   ///< of `estimate` on the recording, outliers included, m
+  TransferValidation transfer;  ///< fit of waist and markers with the joints as calibrated
+  /// Fit with the calibration as prior and every joint free to have moved.
+  CalibrationResult estimate;
+  double rmse_estimate = 0.0;  ///< error of `estimate` on the recording, outliers included, m
   JointCheck check;
-  std::vector<std::string> mistakes;  ///< of the recording, which say nothing of the robot
-  /// What explains it as well as joints that have moved (FindAlternatives).
+  /// Mistakes of the recording, which tell nothing about the robot.
+  std::vector<std::string> mistakes;
+  /// What explains the recording as well as moved joints do (FindAlternatives).
   std::vector<std::string> alternatives;
-  double expected_error = 0.0;  ///< of a robot that was never calibrated (ExpectedError), m
-  double left_before = 0.0;     ///< by the calibration, of its own markers, rms, m; 0: unknown
-  Eigen::VectorXd left;         ///< by `estimate`, rms over the markers of each posture, m
+  /// Expected error of a robot that was never calibrated (ExpectedError), m.
+  double expected_error = 0.0;
+  /// Error that the calibration left on its own markers, rms, m; 0: unknown.
+  double left_before = 0.0;
+  Eigen::VectorXd left;  ///< error that `estimate` leaves, rms over the markers of each posture, m
   std::vector<std::string> warnings;
 
   bool converged() const { return estimate.termination == Termination::kConverged; }
-  /// Whether the calibrated robot errs by less than twice what one that was never calibrated is
-  /// expected to. Otherwise "nothing has moved" would only mean that no single joint explains it.
+  /// Whether the error of the calibrated robot is less than twice that expected of a robot that was
+  /// never calibrated. Otherwise "nothing has moved" would only mean that no single joint explains
+  /// the error.
   bool plausible() const;
-  /// The largest error that a robot with moved joints may leave: four times that of the
-  /// calibration, m.
+  /// The largest error that a robot with moved joints may leave, m: four times that of the
+  /// calibration, at least 2 % of `expected_error`; infinite where `left_before` is unknown.
   double most_left() const;
-  /// Whether the robot, with every joint free to have moved, leaves no more than that.
+  /// Whether `estimate` leaves at most `most_left`.
   bool explained() const { return !(rmse_estimate > most_left()); }
-  /// Whether the recording is to blame: an alternative explains the misfit, which moved joints do
+  /// Whether the recording is to blame: an alternative explains the misfit, and moved joints do
   /// not, or only several of them.
   bool recording_explains() const;
-  /// Whether the robot as calibrated leaves more than `most_left` and no joint is accused of it:
-  /// the postures, or the markers, are too few to tell which joint it is.
+  /// Whether the calibrated robot leaves more than `most_left` although no joint is accused: the
+  /// postures or the markers are too few to tell which joint it is.
   bool changed_beyond_telling() const;
   /// Whether the calibration still explains the robot.
   bool unchanged() const;

@@ -9,7 +9,7 @@
 
 namespace elastocal {
 
-/// By link, whether its markers are where they were.
+/// By link: whether its markers are where they were.
 nlohmann::ordered_json MarkersJson(const std::vector<LinkMarkers>& links);
 
 /// `moved`, `suspects`, `or_markers`, `markers`, `earlier_sd_factor`, `not_told` and `joints`

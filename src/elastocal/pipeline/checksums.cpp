@@ -19,7 +19,7 @@ using Checksums = std::map<std::string, std::string>;
 
 bool IsThere(const fs::path& file) { return FileTypeOf(file) != fs::file_type::not_found; }
 
-/// Those of a folder; none where there is no such file.
+/// Reads the checksums of a folder; empty where it has none.
 Checksums ReadChecksums(const fs::path& folder) {
   constexpr std::size_t kDigits = 64;
   const std::string between = "  ";

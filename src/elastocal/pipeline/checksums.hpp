@@ -9,24 +9,25 @@
 
 namespace elastocal {
 
-/// A folder of results holds SHA256SUMS, the checksum of every file that commands wrote there, in
-/// the form that `sha256sum --check` reads. By it readers tell results of one state from a mixture,
-/// and writers their own files from those of somebody else.
+/// Name of the file SHA256SUMS in a folder of results. It holds the checksum of every file that
+/// commands wrote there, in the form that `sha256sum --check` reads. By it readers recognise a
+/// mixture of results of different runs, and writers files that are not their own.
 extern const char* const kChecksums;
 
-/// Throws InputError where a listed file has changed, or where there is a calibration or its
-/// summary that is not listed: then the folder is of two runs. Listed files may be missing. Does
+/// Throws InputError where a listed file has changed, or where a calibration or its summary is
+/// there but not listed: the folder then holds files of two runs. Listed files may be missing. Does
 /// nothing in a folder without SHA256SUMS.
 void CheckChecksums(const std::filesystem::path& folder);
 
-/// Throws InputError where a file of one of these names is there and not listed: it is somebody
-/// else's.
+/// Throws InputError where a file with one of these names exists but is not listed: it was not
+/// written by this program.
 void CheckOwn(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
 /// Whether the folder's SHA256SUMS lists a file.
 bool ListedIn(const std::filesystem::path& folder, const std::string& name);
 
-/// SHA256SUMS as it is after the publication of `outputs`, whose contents in this folder are set.
+/// New contents of SHA256SUMS after the publication of `outputs`, whose contents in this folder are
+/// set.
 std::string UpdateChecksums(const std::filesystem::path& folder, const OutputSet& outputs);
 
 }  // namespace elastocal

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kFewestPostures = 15, kLargestTable = 300;  // for a choice without being asked
 
-/// The mean time of the postures, where they have times that differ.
+/// Mean time of the postures, h, if their times differ.
 std::optional<double> MeanHours(const Recording& recording) {
   if (recording.time_s.size() == 0 || recording.time_s.minCoeff() == recording.time_s.maxCoeff()) {
     return std::nullopt;
@@ -29,7 +29,7 @@ std::optional<double> MeanHours(const Recording& recording) {
   return recording.time_s.mean() / 3600.0;
 }
 
-/// All causes that a recording may show.
+/// All causes that a recording can show.
 std::vector<std::string> PossibleCauses(const Project& project, const Recording& recording) {
   return CausesOf(PossibleCorrections(project.tree, MeanHours(recording), recording.marker_names));
 }
@@ -48,8 +48,8 @@ std::vector<std::string> CausesMatching(const std::vector<std::string>& causes,
   return matching;
 }
 
-/// The causes that the search took, less those that a calibration with all of them does not find:
-/// they are left out one by one, also of the search.
+/// The causes that the search took, without those that a calibration with all of them does not find
+/// significant. These are removed one by one, also from the search.
 template <typename CalibrateWith>
 std::vector<std::string> TakeChosen(const CalibrateWith& calibrate_with, CauseSearch& search) {
   std::vector<std::string> extra;
@@ -180,8 +180,8 @@ ObservedCauses ChooseObservedCauses(const Project& project, const ObservedRobot&
 }
 
 std::optional<std::string> IdleCause(const CalibrationResult& result) {
-  constexpr double kPlain = 0.9545;  // probability of two standard deviations of one parameter
-  std::map<std::string, std::vector<Eigen::Index>> entries;  // of the posterior, by cause
+  constexpr double kPlain = 0.9545;  // probability within two standard deviations of one parameter
+  std::map<std::string, std::vector<Eigen::Index>> entries;  // rows of the posterior, by cause
   const std::vector<int>& known = result.posterior.parameters;
   for (std::size_t k = 0; k < known.size(); ++k) {
     const int correction = result.model.parameters[static_cast<std::size_t>(known[k])].correction;

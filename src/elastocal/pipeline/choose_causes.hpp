@@ -15,43 +15,46 @@
 
 namespace elastocal {
 
-/// What a recording says about causes of error beyond geometry and springs.
+/// What a recording tells about causes of error beyond geometry and springs.
 struct CauseReport {
   CauseSearch search;
-  std::vector<Parameter> parameters;    ///< that CauseFinding::parameters refer to
-  std::vector<Correction> corrections;  ///< that these refer to
+  std::vector<Parameter> parameters;    ///< parameters to which CauseFinding::parameters refer
+  std::vector<Correction> corrections;  ///< corrections to which these parameters refer
   int postures = 0;
-  /// Whether errors are in m; else in standard deviations of the noise of what was observed.
+  /// Errors are in m; if false, in standard deviations of the observations' noise.
   bool in_metres = true;
   double error_factor() const { return in_metres ? 1e3 : 1.0; }
   const char* error_unit() const { return in_metres ? "mm" : "sds"; }
-  std::vector<CausePicture> pictures;  ///< of the causes that were taken, and of the best others
+  /// Pictures of the causes that were taken, and of the best others.
+  std::vector<CausePicture> pictures;
 };
 
-/// Calibrates without extra causes (those of `given` are ignored, but for those of an earlier
-/// calibration that is the prior), then tests each and searches the best set. `places`: of markers,
-/// as measured; those that contradict the recording are left out. Throws what Calibrate throws.
+/// Calibrates without extra causes (those of `given` are ignored, unless they belong to an earlier
+/// calibration that is the prior), then tests each cause and searches for the best set. `places`
+/// are measured positions of markers; those that contradict the recording are left out. Throws as
+/// Calibrate.
 CauseReport StudyCauses(const Project& given, const Measurements& measured,
                         std::optional<std::uint64_t> seed,
                         const std::vector<MarkerMeasurement>& places = {});
 
-/// The same of tables of observations, beside what `model` has: `fit` is that of `model`.
+/// As StudyCauses, for tables of observations, beside what `model` contains; `fit` is the fit of
+/// `model`.
 CauseReport StudyObservedCauses(const Project& project, const ObservedRobot& model,
                                 const Observations& observations, const ObservationFit& fit,
                                 std::optional<std::uint64_t> seed);
 
-/// Whether a table of so many postures may choose causes without being asked: 15 to 300.
+/// Whether causes are chosen without a request for so many postures of a table: 15 to 300.
 bool MayChooseCauses(int postures);
 
-/// Sets the extra causes of the project's models as `calibration.extra` says: those named, none,
-/// or those that the held-out error of a table of 15 to 300 postures asks for and that a
-/// calibration with all of them does not find within their uncertainty; then what was found on the
-/// way.
+/// Sets the extra causes of the project's model as `calibration.extra` says: the named ones, none,
+/// or those that lower the held-out error of a posture table of 15 to 300 postures and that a
+/// calibration with all of them finds significant (IdleCause). Returns the study where one was
+/// made.
 std::optional<CauseReport> ChooseCauses(const Measurements& measured,
                                         std::optional<std::uint64_t> seed, Project& project);
 
-/// The same of tables of observations, where `fit` is that of `model`: the causes, and what was
-/// found on the way. The same tables give the same causes. Throws InputError for names of
+/// As ChooseCauses, for tables of observations; `fit` is the fit of `model`. Returns the causes and
+/// the study. The same tables give the same causes. Throws InputError for names in
 /// `calibration.extra` that these tables cannot show.
 struct ObservedCauses {
   std::vector<std::string> extra;
@@ -60,32 +63,32 @@ struct ObservedCauses {
 ObservedCauses ChooseObservedCauses(const Project& project, const ObservedRobot& model,
                                     const Observations& observations, const ObservationFit& fit);
 
-/// Extra causes that a stored calibration has, by the names of its parameters; not those of its
-/// recording alone (drift).
+/// Extra causes of a stored calibration, by the names of its parameters, without those that hold
+/// for its recording alone (drift).
 std::vector<std::string> StoredCauses(const RobotTree& tree,
                                       const std::map<std::string, double>& joint_errors);
 
-/// The least significant cause of a calibration that has several, if zero lies within the region of
-/// two standard deviations of all its parameters together: another cause, or a spring, then
-/// explains what it was found by. (Each parameter alone may be doubtful although the cause is
-/// plain.) Nothing where every cause is significant.
+/// The least significant cause of a calibration, if zero lies within the two-standard-deviation
+/// region of all its parameters together: another cause, or a spring, then explains what it was
+/// chosen for. (Each parameter alone may be doubtful although the cause is plain.) Nothing where
+/// every cause is significant.
 std::optional<std::string> IdleCause(const CalibrationResult& result);
 
-/// Those of these causes that neither an export nor `compensate` applies, because they depend on
-/// more than positions and loads.
+/// Those of the causes that neither an export nor `compensate` applies, because they depend on time
+/// (drift, creep).
 std::vector<std::string> NeverApplied(const std::vector<std::string>& causes);
 
 /// What a controller must compensate for the stated errors to hold: "compensation of elasticity and
-/// j.gear". `springs`: whether elasticity is a part of it.
+/// j.gear". `springs` says whether elasticity is part of it.
 std::string CompensationInWords(bool springs, const std::vector<std::string>& causes);
 
-/// A warning: these causes were taken of a robot that the project holds rigid, and elastic joints
-/// would plainly predict better.
+/// Warning that these causes were taken for a robot that the project holds rigid, although elastic
+/// joints would plainly predict better.
 std::string DescribeForbiddenSprings(const std::vector<std::string>& causes);
 
-/// A warning for whoever uses a calibration with these causes, which names those that are not
-/// applied; empty where all are. `at_run_time`: in a robot at run time, which applies what depends
-/// on motion and loads.
+/// Warning for users of a calibration with these causes, which names those that are not applied;
+/// empty where all are. `at_run_time` is for a robot at run time, which also applies causes that
+/// depend on motion and loads.
 std::string NotApplied(const std::vector<std::string>& causes, bool at_run_time);
 
 }  // namespace elastocal

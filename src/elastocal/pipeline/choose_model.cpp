@@ -11,7 +11,7 @@
 namespace elastocal {
 namespace {
 
-/// Whether the second errors are less by more than twice the standard error of that.
+/// Whether the second errors are smaller by more than twice the standard error of the difference.
 bool IsPlainlyLess(const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
   const Eigen::ArrayXd gains = before - after;
   const auto count = static_cast<double>(gains.size());
@@ -19,14 +19,14 @@ bool IsPlainlyLess(const Eigen::VectorXd& before, const Eigen::VectorXd& after) 
   return gains.mean() > 2.0 * sd;
 }
 
-/// Whether the project says which joints are elastic, and leaves out some.
+/// Whether the project names the elastic joints and does not name all.
 bool HoldsJointsRigid(const ElasticityChoice& own) {
   if (!own.torsion && !own.bending) return false;
   const std::vector<std::string> torsion = own.torsion.value_or(std::vector<std::string>());
   return std::find(torsion.begin(), torsion.end(), "*") == torsion.end();
 }
 
-/// See ModelChoice: of a project as it was decided.
+/// Determines ModelChoice::misses_springs for a project whose model is chosen.
 bool MissesSprings(const Measurements& measured, std::optional<std::uint64_t> seed, int folds,
                    int threads, Project project) {
   ElasticityChoice& own = project.elasticity;
@@ -53,9 +53,10 @@ ModelChoice ChooseModel(const Measurements& measured, std::optional<std::uint64_
                         int threads, Project& project, AskForSprings ask) {
   const ElasticityChoice open = project.elasticity;
   ModelChoice choice;
-  // Section 2.2: whether the joints of a table of postures are taken as elastic, the data say.
+  // Section 2.2: the data decide whether the joints of a posture table are elastic.
   choice.elasticity = ChooseElasticity(measured.calibration, seed, folds, threads, project);
-  // Not in the paper: what neither geometry nor springs explain, where the data ask for it.
+  // Not in the paper: causes that neither geometry nor springs explain, where the data ask for
+  // them.
   choice.causes = ChooseCauses(measured, seed, project);
   if (choice.causes && ask == AskForSprings::kYes) {
     choice.misses_springs = MissesSprings(measured, seed, folds, threads, project);

@@ -10,18 +10,19 @@
 
 namespace elastocal {
 
-/// Two stored calibrations and what differs between them.
+/// Two stored calibrations and their differences.
 struct ComparisonRun {
   CalibrationEstimate a, b;  ///< the earlier and the later one
   CalibrationComparison comparison;
-  std::vector<SoleDifference> soles;  ///< which no joint has, and no verdict of the joints
+  /// Differences of the soles, which belong to no joint and do not enter the verdict on joints.
+  std::vector<SoleDifference> soles;
 };
 
-/// Reads two calibrations of one robot and tells which joints moved between them (paper, section
+/// Reads two calibrations of one robot and finds the joints that moved between them (paper, section
 /// 6.1.3). Each is given as the folder that calibrate wrote to, or as its calibration.yaml.
 ///
-/// Throws InputError: what FindCalibrationFiles and ReadCalibrationFiles refuse, and what the
-/// comparison of estimates refuses: other nominal robots, nothing in common.
+/// Throws InputError as FindCalibrationFiles, ReadCalibrationFiles and the comparison of estimates:
+/// for other nominal robots, or nothing in common.
 ComparisonRun CompareCalibrations(const std::filesystem::path& a, const std::filesystem::path& b,
                                   const ComparisonOptions& options = {});
 

@@ -38,7 +38,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kFewestChecked = 4;
 
-/// What a robot with these errors leaves of each observation once all beside it is fitted.
+/// Residuals of the observations for a robot with these errors, after all beside the robot is
+/// fitted.
 std::vector<Eigen::VectorXd> LeftBy(const ContactCheck& run, const Eigen::VectorXd& errors) {
   ObservationFit start = StartFit(run.model, run.observations);
   start.values.robot = errors;
@@ -52,7 +53,7 @@ ObservationFigures FiguresOf(const ContactCheck& run, const Eigen::VectorXd& err
   return MakeFigures(run.model, run.observations, LeftBy(run, errors));
 }
 
-/// Observations that are further off than four times the noise, a sentence each.
+/// Describes observations that are further off than four times the noise, a sentence each.
 std::vector<std::string> FarObservations(const ContactCheck& run, const Spread& noise,
                                          const std::vector<Eigen::VectorXd>& left) {
   constexpr double kFar = 4.0;
@@ -80,7 +81,7 @@ Observations WithoutPostures(const Observations& observations, const std::set<in
   return SelectPostures(observations, others);
 }
 
-/// The posture that is furthest from what the fit expects there.
+/// The posture with the largest residuals of a fit.
 int WorstPosture(const ObservedRobot& model, const Observations& observations,
                  const ObservationFit& fit) {
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(observations.posture_count());
@@ -95,14 +96,15 @@ int WorstPosture(const ObservedRobot& model, const Observations& observations,
   return static_cast<int>(worst);
 }
 
-/// Logarithm of the normal density of x about zero, but for what depends on its size alone.
+/// Logarithm of the normal density of x about zero, without the constant that depends only on its
+/// size.
 double LogNormal(const Eigen::VectorXd& x, const Eigen::MatrixXd& covariance) {
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   const Eigen::MatrixXd L = factor.matrixL();
   return -0.5 * x.dot(factor.solve(x)) - L.diagonal().array().log().sum();
 }
 
-/// What explains a change as well as moved joints, beside a robot that is as it was calibrated.
+/// Search for explanations of a change other than moved joints, for a robot that is as calibrated.
 class AlternativeSearch {
  public:
   AlternativeSearch(const ContactCheck& run, const EarlierContacts& earlier,
@@ -118,10 +120,11 @@ class AlternativeSearch {
     estimate_ = EstimateObserved(calibrated_, run.observations, {});
   }
 
-  /// What contradicts the others, or the worst posture, if the rest says that nothing has changed.
+  /// Outlying observations, or the worst posture, if the other postures say that nothing has
+  /// changed.
   struct FewPostures {
     std::string text;       ///< empty: there are none
-    bool likelier = false;  ///< to be wrong than joints to have moved
+    bool likelier = false;  ///< more probable to be wrong than joints to have moved
   };
   FewPostures FindFewPostures() const {
     constexpr double kMostOthers = 0.75;  // of the postures
@@ -146,7 +149,7 @@ class AlternativeSearch {
     return {text, EvidenceOfWrong(bad) > run_.check.log_evidence};
   }
 
-  /// Faults of the tables.
+  /// Describes the faults of the tables that explain the change.
   std::vector<std::string> Faults() const {
     constexpr std::size_t kMostTried = 8;
     std::vector<ObservationFault> faults =
@@ -166,8 +169,8 @@ class AlternativeSearch {
       found.push_back(DescribeOtherSessions(exchanged, all));
     }
     for (const ObservationFault& fault : faults) {
-      // Beside errors as small as a moved joint's, some split of the rows explains them by chance;
-      // from the first row on, that is a joint or a mounting that has moved.
+      // Some split of the rows explains errors as small as a moved joint's by chance; from the
+      // first row on, it is a joint or a mounting that has moved.
       const bool from = fault.kind == ObservationFaultKind::kJointOffset ||
                         fault.kind == ObservationFaultKind::kJointDrift ||
                         fault.kind == ObservationFaultKind::kMoved;
@@ -181,10 +184,10 @@ class AlternativeSearch {
   }
 
  private:
-  /// Natural logarithm of p(all | these postures are wrong) / p(all | nothing has changed), each
-  /// posture being as likely to be wrong. What is wrong is off by as much as no calibrated robot
-  /// is (LargestError) or by a half, a quarter or an eighth of it, each as likely; what is not, by
-  /// its noise and by what the others leave open.
+  /// Natural logarithm of p(all | these postures are wrong) / p(all | nothing has changed). Each
+  /// posture is equally likely to be wrong. A wrong observation is off by the largest error of a
+  /// calibrated robot (LargestError) or by a half, a quarter or an eighth of it, each equally
+  /// likely; any other by its noise and by what the others leave open.
   double EvidenceOfWrong(const std::set<int>& postures) const {
     const Observations& all = run_.observations;
     ObservationFit fit = StartFit(calibrated_, all);
@@ -223,7 +226,7 @@ class AlternativeSearch {
            static_cast<double>(postures.size()) * std::log(all.posture_count());
   }
 
-  /// Whether the robot is as it was calibrated in other observations of the same day.
+  /// Whether the calibrated robot explains these observations of the same day.
   bool Holds(const Observations& observations) const {
     ContactCheck other = run_;
     other.observations = observations;
@@ -238,7 +241,7 @@ class AlternativeSearch {
   const EarlierEstimate& known_;
   const Project& project_;
   const JointCheckOptions& options_;
-  ObservedRobot calibrated_;  ///< by the earlier calibration as the prior
+  ObservedRobot calibrated_;  ///< with the earlier calibration as prior
   ObservedEstimate estimate_;
 };
 

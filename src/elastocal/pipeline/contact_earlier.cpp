@@ -14,7 +14,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kToldByEarlier = 10.0;  // numbers, of each standard deviation
+constexpr double kToldByEarlier = 10.0;  // numbers for which each standard deviation counts
 
 std::vector<int> JointsOf(const std::optional<std::vector<std::string>>& names,
                           const RobotTree& tree) {

@@ -13,10 +13,10 @@
 
 namespace elastocal {
 
-/// The robot of a stored calibration as it stands in tables: elastic where that found it elastic,
-/// and with its causes beyond springs, as far as tables show them (ObservableCorrections); what is
-/// in common says nothing about values that are known. Throws InputError for a calibration
-/// of another robot.
+/// The robot of a stored calibration, for the given tables. It has the elasticity of the
+/// calibration and those of its causes that tables show (ObservableCorrections). Parameters in
+/// common say nothing about values that are known. Throws InputError for a calibration of another
+/// robot.
 ObservedRobot MakeStoredRobot(const StoredCalibration& stored, const Project& project,
                               const ObservationSetup& setup);
 
@@ -25,32 +25,33 @@ struct EarlierContacts {
   StoredCalibration stored;
   StoredContacts contacts;
   CalibrationEstimate estimate;
-  /// Whether it was made from touches or instruments; else it knows the robot alone, and contacts
-  /// are as the project has them.
+  /// It was made from touches or instruments. If false, it knows the robot alone, and contacts are
+  /// as in the project.
   bool of_contacts = true;
 };
 
-/// Reads the folder that calibrate wrote to, or its calibration.yaml. Throws InputError: files that
-/// cannot be read, or without covariance; a calibration that was not made from such tables.
+/// Reads a calibration: the folder that calibrate wrote to, or its calibration.yaml. Throws
+/// InputError for files that cannot be read, without covariance, and for a calibration that was not
+/// made from such tables.
 EarlierContacts ReadEarlierContacts(const std::filesystem::path& calibration,
                                     const Project& project);
 
-/// The same of a prior, which may also have been made from markers, or be that of a fleet.
+/// As ReadEarlierContacts, for a prior, which may also be made from markers, or be that of a fleet.
 EarlierContacts ReadPriorOfContacts(const std::filesystem::path& calibration,
                                     const Project& project);
 
-/// The robot as it stands in new tables, as MakeStoredRobot has it.
-/// What it found to vary is the first guess, and counts as ten numbers. Throws InputError for a
-/// calibration of another robot.
+/// The robot for new tables, as by MakeStoredRobot. The standard deviations that the calibration
+/// found are the first guess and count as ten numbers each. Throws InputError for a calibration of
+/// another robot.
 ObservedRobot MakeRobotAfterEarlier(const EarlierContacts& earlier, const Project& project,
                                     const ObservationTables& tables);
 
-/// What the earlier calibration says of that robot `days` later (MakeEarlierEstimate).
+/// What the earlier calibration tells about that robot `days` later (MakeEarlierEstimate).
 EarlierEstimate MakeEarlierOfContacts(const EarlierContacts& earlier, const ObservedRobot& model,
                                       const Project& project, double days);
 
-/// New observations fitted with the earlier calibration as the prior, every joint free to have
-/// moved since, and the joints that have (FindMovedJoints).
+/// Fit of new observations with the earlier calibration as prior and every joint free to have moved
+/// since, and the joints that have moved (FindMovedJoints).
 struct OpenedRobot {
   ObservedRobot model;
   ObservedEstimate estimate;
@@ -60,9 +61,8 @@ OpenedRobot OpenJoints(const ObservedRobot& model, const EarlierEstimate& earlie
                        const Observations& observations, const Project& project,
                        const JointCheckOptions& options = {});
 
-/// Makes the earlier calibration the prior of a robot. What it says of joints that seem to have
-/// moved since counts as little as what is known of a new robot. Returns what a user should know of
-/// it, a sentence each.
+/// Makes the earlier calibration the prior of a robot. For joints that seem to have moved since,
+/// the prior is as wide as for a new robot. Returns warnings for the user, a sentence each.
 std::vector<std::string> StartFromEarlierContacts(const EarlierContacts& earlier,
                                                   const Observations& observations,
                                                   const Project& project, double days,

@@ -15,8 +15,8 @@
 namespace elastocal {
 namespace {
 
-constexpr double kClearlyWorse = 1.25;  // of the error before
-constexpr double kMoreThanNoise = 0.1;  // of LargestError: below, it may be noise
+constexpr double kClearlyWorse = 1.25;  // ratio to the error before
+constexpr double kMoreThanNoise = 0.1;  // share of LargestError below which an error may be noise
 
 /// "position of lt"
 std::string RowName(const ObservedRobot& model, const RowErrors& row) {

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegreesOf = 180.0 / M_PI;
 
-/// "height_mm": a name with the unit in which it is shown.
+/// A name with the unit in which it is shown: "height_mm".
 std::string ShownName(const std::string& name, SourceUnit unit) {
   std::string suffix = ShownUnitOf(unit).name;
   for (std::size_t at; (at = suffix.find('/')) != std::string::npos;) {
@@ -36,7 +36,7 @@ Json SpreadJson(const ObservedRobot& model, const Spread& spread) {
   return json;
 }
 
-/// How many numbers told each standard deviation of the spread.
+/// Number of numbers from which each standard deviation of the spread was estimated.
 Json SpreadNumbersJson(const ObservedRobot& model, const ObservationFit& fit) {
   Json json = Json::object();
   for (std::size_t s = 0; s < fit.spread_freedom.size(); ++s) {
@@ -46,8 +46,8 @@ Json SpreadNumbersJson(const ObservedRobot& model, const ObservationFit& fit) {
   return json;
 }
 
-/// Standard deviations of the numbers of a quantity or of a session's effect, times `factor`, from
-/// the entry of the covariance where they begin; null where they were not estimated.
+/// Standard deviations of the numbers of a quantity or of a session's effect, times `factor`,
+/// starting at an entry of the covariance; null where they were not estimated.
 Json SdsJson(const ObservationFit& fit, int entry, int first, int count, double factor) {
   Json sds = Json::array();
   for (int k = first; k < first + count; ++k) {
@@ -63,7 +63,7 @@ Json NumbersJson(const Eigen::VectorXd& x, int first, int count, double factor) 
   return numbers;
 }
 
-/// SI units of the numbers of a quantity; empty for a relative one.
+/// SI units of the numbers of a quantity; empty for a relative number.
 Json UnitsJson(const ObservationSetup& setup, int quantity) {
   Json units = Json::array();
   for (int source : setup.quantities[quantity].sources) {
@@ -97,7 +97,7 @@ Json PlatesJson(const ContactRun& run) {
   return json;
 }
 
-/// Quantities that instruments other than plates depend on: origin, values and their standard
+/// Quantities on which instruments other than plates depend: origin, values and their standard
 /// deviations, SI.
 Json QuantitiesJson(const ContactRun& run) {
   Json json = Json::array();
@@ -121,7 +121,7 @@ Json QuantitiesJson(const ContactRun& run) {
   return json;
 }
 
-/// By how much each quantity differs in each session from its mean.
+/// Difference of each quantity in each session from its mean.
 Json SessionEffectsJson(const ContactRun& run) {
   Json json = Json::array();
   const ObservationFit& fit = run.calibrated.estimate.fit;
@@ -155,7 +155,7 @@ Json SessionEffectsJson(const ContactRun& run) {
   return json;
 }
 
-/// What is left of an observation: of touches as height_mm and tilt_deg, of others by rows.
+/// Residual of an observation: height_mm and tilt_deg for touches, by rows for others.
 void AddLeft(const Instrument& instrument, const Eigen::VectorXd& left, Json& json) {
   if (instrument.measured_size() == 0) {
     json["height_mm"] = 1e3 * left[0];

@@ -16,10 +16,10 @@
 namespace elastocal {
 namespace {
 
-constexpr double kMuchNoise = 4.0;  // times what the project says
+constexpr double kMuchNoise = 4.0;  // times the noise in the project
 
-/// Mountings and numbers of cameras that are far from the project's, beside what it says of their
-/// accuracy.
+/// Mountings and parameters of cameras that are far from the project's, relative to the accuracy
+/// that it states.
 std::vector<std::string> FarQuantities(const ContactRun& run) {
   constexpr double kFarSds = 6.0;
   const std::vector<Source>& sources = run.model.setup.sources;
@@ -29,7 +29,7 @@ std::vector<std::string> FarQuantities(const ContactRun& run) {
     const std::vector<int>& of = run.model.setup.quantities[k].sources;
     for (std::size_t first = 0, end = 0; first < of.size(); first = end) {
       while (end < of.size() && of[end] == of[first]) ++end;
-      if (of[first] < kCommonSources) continue;  // of nobody's project
+      if (of[first] < kCommonSources) continue;  // not from the project
       const Source& source = sources[static_cast<std::size_t>(of[first])];
       const auto count = static_cast<Eigen::Index>(end - first);
       const auto at = static_cast<Eigen::Index>(first);
@@ -49,8 +49,8 @@ std::vector<std::string> FarQuantities(const ContactRun& run) {
   return far;
 }
 
-/// No source says how far the normal of a plate may be off: its tilts are estimated whatever they
-/// are.
+/// Names tilts of plates that are far from the project's. No source limits them, so that they are
+/// estimated whatever they are.
 std::vector<std::string> FarTilts(const ContactRun& run) {
   constexpr double kFarTilt = 20.0 * kRadiansPerDegree;
   const std::vector<QuantityValue>& values = run.calibrated.estimate.fit.values.quantities;

@@ -5,17 +5,18 @@
 
 namespace elastocal {
 
-/// Remarks on what is stated of instruments in project and tables, where the observations say
-/// otherwise. They do not keep a calibration from being deployed.
+/// Remarks on statements about instruments in project and tables that the observations contradict.
+/// They do not keep a calibration from being deployed.
 
-/// Noise that is far above what the project says of an instrument is no noise of it.
+/// Names instruments whose noise is far above what the project says (four times).
 void RemarkOnNoise(ContactRun& run);
 
-/// Mountings, and numbers of cameras, that are far from where the project has them: what is typed
-/// wrong there is estimated all the same, but it may be the wrong tag, link or camera.
+/// Names mountings, and parameters of cameras, that are far from the project's. They are estimated
+/// all the same, but the project may name the wrong tag, link or camera.
 void RemarkOnMountings(ContactRun& run);
 
-/// A covariance of poses in other units, or with rotations first, is not of what is left of them.
+/// Names covariances of poses whose shape the residuals contradict: other units, or rotations
+/// first.
 void RemarkOnCovariances(ContactRun& run);
 
 }  // namespace elastocal

@@ -48,8 +48,8 @@ ContactOutcome Estimate(const ObservedRobot& model, const Observations& observat
   return outcome;
 }
 
-/// The same model without compliances and causes, and what is known of it; nothing where it has
-/// neither.
+/// The same model without compliances and causes, and without what is known of these; nothing where
+/// it has none.
 std::optional<ObservedRobot> WithGeometryOnly(const ObservedRobot& model,
                                               const Observations& observations,
                                               const Project& project,
@@ -67,7 +67,8 @@ std::optional<ObservedRobot> WithGeometryOnly(const ObservedRobot& model,
                                           elasticity.torsion, elasticity.bending);
   KeepObservedUnknowns(observations, rigid);
   rigid.earlier = model.earlier;
-  if (earlier && !earlier->stored.urdf_errors.empty()) {  // springs of zero have moved the rest
+  // Springs that are zero have changed the others.
+  if (earlier && !earlier->stored.urdf_errors.empty()) {
     for (std::size_t i = 0; i < rigid.earlier.names.size(); ++i) {
       const auto found = earlier->stored.urdf_errors.find(rigid.earlier.names[i]);
       if (found == earlier->stored.urdf_errors.end()) continue;
@@ -81,7 +82,7 @@ bool IsElasticityOpen(const Project& project) {
   return !project.elasticity.torsion && !project.elasticity.bending;
 }
 
-/// All joints give way about their axes; nothing where the robot has no masses.
+/// The model with torsion in all joints; nothing where the robot has no masses.
 std::optional<ObservedRobot> WithTorsion(const ObservedRobot& rigid,
                                          const Observations& observations, const Project& project) {
   if (!HasMasses(project.tree)) return std::nullopt;
@@ -95,7 +96,7 @@ std::optional<ObservedRobot> WithTorsion(const ObservedRobot& rigid,
   return elastic;
 }
 
-/// Takes a wider model in place of the one so far. What was estimated first is the geometry alone.
+/// Replaces the model by a wider one. The first estimate then becomes the geometry alone.
 void Take(ObservedRobot wider, ContactOutcome outcome, ContactRun& run) {
   ContactOutcome narrow = std::exchange(run.calibrated, std::move(outcome));
   ObservedRobot before = std::exchange(run.model, std::move(wider));
@@ -108,13 +109,14 @@ void Take(ObservedRobot wider, ContactOutcome outcome, ContactRun& run) {
   run.rigid_model = std::move(before);
 }
 
-constexpr double kElasticGain = 2.0;  // standard errors: by which elastic joints lower the error
+// In standard errors: least gain by which elastic joints are taken.
+constexpr double kElasticGain = 2.0;
 constexpr const char* kTakenAsElastic =
     "joints are taken as elastic about their axes, which predicts postures that were left out "
     "better; elasticity in the project says otherwise where it is known";
 
-/// Where nobody says whether joints give way, left-out postures do: elastic joints enter where they
-/// lower the error by more than twice the standard error of that gain. Whether they did.
+/// Makes joints elastic, where the project leaves it open, if that lowers the error on held-out
+/// postures by more than twice the standard error of the gain. Returns whether it did.
 bool TakeElasticity(const Project& project, const ContactRunOptions& options, int folds,
                     ContactRun& run) {
   if (folds == 0 || !IsElasticityOpen(project)) return false;
@@ -131,8 +133,8 @@ bool TakeElasticity(const Project& project, const ContactRunOptions& options, in
   return true;
 }
 
-/// Causes beyond geometry and springs, beside what the model has so far (ChooseObservedCauses).
-/// Those that the program chose must also hold where everything is estimated anew.
+/// Adds causes beyond geometry and springs to the model (ChooseObservedCauses). Causes that the
+/// program chose must also be significant in a complete estimate.
 void TakeCauses(const Project& project, const ContactRunOptions& options, int folds,
                 ContactRun& run) {
   ObservedCauses causes =
@@ -141,7 +143,7 @@ void TakeCauses(const Project& project, const ContactRunOptions& options, int fo
   run.extra = std::move(causes.extra);
   if (run.extra.empty()) return;
   if (run.causes && !FindObservedFault(run.model, run.observations, run.calibrated.estimate.fit)
-                         .empty()) {  // of the table: no cause is to hide it
+                         .empty()) {  // a mistake in the table: no cause may hide it
     run.extra.clear();
     run.causes->search.accepted = false;
     return;
@@ -162,8 +164,8 @@ void TakeCauses(const Project& project, const ContactRunOptions& options, int fo
   Take(std::move(with), std::move(outcome), run);
 }
 
-/// Gives up the springs that were found before the causes, and these with them, where springs do
-/// not lower the error beside the causes as well. Whether it did.
+/// Removes the springs that were found before the causes, together with the causes, where springs
+/// do not also lower the error beside the causes. Returns whether it did.
 bool GiveUpElasticity(const Project& project, const ContactRunOptions& options, int folds,
                       ContactRun& run) {
   const ObservedRobot rigid = WithCorrections(*run.rigid_model, project.placement, run.observations,
@@ -182,8 +184,8 @@ bool GiveUpElasticity(const Project& project, const ContactRunOptions& options, 
   return true;
 }
 
-/// Where the project holds joints rigid, causes may stand for the springs that it forbids: elastic
-/// joints that predict what was left out plainly better than the causes do are said.
+/// Warns where the project holds joints rigid and elastic joints predict held-out postures plainly
+/// better than the causes that were taken, which may then stand for springs.
 void WarnOfForbiddenSprings(const Project& project, const ContactRunOptions& options, int folds,
                             ContactRun& run) {
   const Elasticity& own = run.model.robot.elasticity;
@@ -200,9 +202,9 @@ void WarnOfForbiddenSprings(const Project& project, const ContactRunOptions& opt
   }
 }
 
-/// Springs and causes that the data ask for. A large cause hides springs or looks like them, and a
-/// spring that is missing looks like a cause: where causes were found, springs are decided on once
-/// more beside them and, if that changes, causes once more.
+/// Chooses springs and causes by the data. A large cause hides springs or looks like them, and a
+/// missing spring looks like a cause. Where causes were found, springs are therefore chosen again
+/// beside them and, if that changes the choice, causes again.
 void ChooseBeyondGeometry(const Project& project, const ContactRunOptions& options, int folds,
                           ContactRun& run) {
   const bool springs = TakeElasticity(project, options, folds, run);
@@ -273,8 +275,8 @@ ContactStart StartContacts(const Project& project,
 
 namespace {
 
-/// The nominal robot with what is beside it estimated, and what is wrong with the tables. Returns
-/// how many folds they still allow: none where a mistake in them would be held out as well.
+/// Estimates what is beside the nominal robot, and finds mistakes in the tables. Returns the number
+/// of folds that the tables allow: none where there is a mistake, which would be held out as well.
 int EstimateUncalibrated(const ContactRunOptions& options, int folds, ContactRun& run) {
   run.uncalibrated = Estimate(run.model, run.observations, false, options, folds);
   if (!LargeErrors(run.model, run.uncalibrated.in_sample).empty()) {
@@ -291,7 +293,7 @@ int EstimateUncalibrated(const ContactRunOptions& options, int folds, ContactRun
   return folds;
 }
 
-/// The geometry that the URDF has, which may be of a fit of its own, and the URDF with it.
+/// Chooses the geometry of the URDF, which may be that of another fit, and makes the URDF.
 void MakeUrdf(const Project& project, ZeroOffsets zero_offsets, int equations, ContactRun& run) {
   if (run.rigid_model) {
     run.in_urdf = ResultOfContacts(*run.rigid_model, run.geometric->estimate.fit, equations);
@@ -339,7 +341,7 @@ ContactRun CalibrateContacts(const Project& project,
   if (!run.geometric) {
     run.rigid_model = WithGeometryOnly(run.model, run.observations, project, earlier);
   }
-  if (run.rigid_model && !run.geometric) {  // a figure beside the result: ten folds will do
+  if (run.rigid_model && !run.geometric) {  // ten folds suffice for a figure beside the result
     run.geometric =
         Estimate(*run.rigid_model, run.observations, true, options, std::min(kUsualFolds, folds));
   }

@@ -19,20 +19,22 @@
 
 namespace elastocal {
 
+/// Settings of CalibrateContacts.
 struct ContactRunOptions {
-  /// Folds of the cross-validation, 2 to the number of postures; 0: none. By default one a posture,
-  /// up to ten.
+  /// Folds of the cross-validation, 2 to the number of postures; 0: none. By default one for each
+  /// posture, at most ten.
   std::optional<int> folds = {};
   int threads = 1;
   ZeroOffsets zero_offsets = ZeroOffsets::kOrigin;
-  std::vector<std::string> accept = {};  ///< mistakes that are corrected (CorrectObservations)
-  std::filesystem::path prior = {};      ///< an earlier calibration; empty: none
-  double days = 1.0;                     ///< since then
+  /// Mistakes that are corrected first (CorrectObservations)
+  std::vector<std::string> accept = {};
+  std::filesystem::path prior = {};  ///< path of an earlier calibration; empty: none
+  double days = 1.0;                 ///< age of the earlier calibration
   Progress progress = {};
 };
 
-/// What an estimate from tables begins with: the observations with the accepted mistakes corrected,
-/// and the robot as the project or an earlier calibration describes it.
+/// Start of an estimate from tables: the observations with the accepted mistakes corrected, and the
+/// robot as the project or an earlier calibration describes it.
 struct ContactStart {
   std::optional<EarlierContacts> earlier;
   Observations observations;
@@ -40,48 +42,50 @@ struct ContactStart {
   std::vector<std::string> warnings;
 };
 
-/// Reads the tables; of the options `accept`, `prior` and `days` count. Throws as CalibrateContacts
-/// does.
+/// Reads the tables. Uses only `accept`, `prior` and `days` of the options. Throws as
+/// CalibrateContacts.
 ContactStart StartContacts(const Project& project,
                            const std::vector<std::filesystem::path>& recordings,
                            const ContactRunOptions& options);
 
-/// An estimate with its errors in and out of sample.
+/// An estimate with its errors in sample and held out.
 struct ContactOutcome {
   ObservedEstimate estimate;
   ObservationFigures in_sample;
-  ObservationCrossValidation held_out;  ///< folds 0: none
+  ObservationCrossValidation held_out;  ///< folds 0: not done
 };
 
-/// A calibration from touches and other instruments.
+/// Result of a calibration from touches and other instruments.
 struct ContactRun {
-  std::string recording;  ///< the files, for people
+  std::string recording;  ///< names of the files
   Observations observations;
   ObservedRobot model;
-  ContactOutcome uncalibrated;  ///< quantities beside the robot and sessions only
+  ContactOutcome uncalibrated;  ///< fit of quantities beside the robot and of sessions only
   ContactOutcome calibrated;
-  std::vector<std::string> extra;     ///< causes beyond geometry and springs that the model has
-  std::optional<CauseReport> causes;  ///< how they were chosen, where they were
-  /// Where joints are elastic or there are such causes: the robot without. The URDF has its
-  /// geometry, because a URDF has no place for them.
+  std::vector<std::string> extra;  ///< causes beyond geometry and springs that the model contains
+  std::optional<CauseReport> causes;  ///< the study by which they were chosen, if there was one
+  /// Where joints are elastic or there are such causes: a fit without them. The URDF has its
+  /// geometry, because a URDF has no place for springs and causes.
   std::optional<ContactOutcome> geometric;
-  std::optional<ObservedRobot> rigid_model;  ///< that of `geometric`
-  /// Mistakes in the tables, which are sought where the nominal robot is off by more than robots
-  /// are (FindObservedMistakes). With one, nothing is left out: there is nothing to validate.
+  std::optional<ObservedRobot> rigid_model;  ///< model of `geometric`
+  /// Mistakes in the tables (FindObservedMistakes). They are sought where the errors of the nominal
+  /// robot are larger than errors of robots. If there are any, no fold is left out, because there
+  /// is nothing to validate.
   std::optional<std::vector<std::string>> mistakes;
-  /// Objection to tables many of whose touches were none, or with rows of other sessions than they
-  /// say; usually empty.
+  /// Objection to tables in which many touches were none, or many rows belong to other sessions
+  /// than stated; usually empty.
   std::string wrong_rows;
   ClosureEvidence closure;
-  double gain_in_sds = 0.0;  ///< of calibrated on held-out (or the same) postures, see GainInSds
-  CalibrationResult result;  ///< the parameters of the robot
-  std::optional<CalibrationResult> in_urdf;  ///< those of `geometric`, which the URDF has
+  /// Gain of the calibrated robot on held-out (else the same) postures, see GainInSds.
+  double gain_in_sds = 0.0;
+  CalibrationResult result;                  ///< the robot's parameters
+  std::optional<CalibrationResult> in_urdf;  ///< parameters of `geometric`, which the URDF contains
   Verdict verdict;
-  std::optional<CalibratedUrdf> urdf;  ///< nothing where the verdict has objections
+  std::optional<CalibratedUrdf> urdf;  ///< empty where the verdict has objections
   ZeroOffsets zero_offsets = ZeroOffsets::kOrigin;
   std::vector<std::string> warnings;
 
-  /// On postures that were left out, where there are folds, else on those of the fit.
+  /// Errors on held-out postures if there are folds, else in sample.
   static const ObservationFigures& Judged(const ContactOutcome& outcome) {
     return outcome.held_out.folds > 0 ? outcome.held_out.figures : outcome.in_sample;
   }
@@ -89,27 +93,27 @@ struct ContactRun {
   bool deployable() const { return verdict.objections.empty(); }
 };
 
-/// The robot as the project describes it, for tables of observations. Throws InputError for what
-/// MakeObservedRobot refuses.
+/// The robot of the project, for tables of observations. Throws InputError as MakeObservedRobot.
 ObservedRobot MakeRobotOfProject(const Project& project, const ObservationTables& tables);
 
 /// Calibrates a robot that touches tables or is measured by instruments while it stands on its feet
-/// or its root link is held still: see EstimateObserved. `recordings`: tables of observations. The
-/// same input gives the same bits. Throws InputError for tables that cannot be read
-/// (ReadObservationTables), folds that they do not allow, and an earlier calibration that does not
-/// apply (MakeRobotAfterEarlier).
+/// or its root link is held still (see EstimateObserved). `recordings` are tables of observations.
+/// The same input gives bit-identical results. Throws InputError for tables that cannot be read
+/// (ReadObservationTables), for folds that they do not allow, and for an earlier calibration that
+/// does not apply (MakeRobotAfterEarlier).
 ContactRun CalibrateContacts(const Project& project,
                              const std::vector<std::filesystem::path>& recordings,
                              const ContactRunOptions& options);
 
-/// "converged", "not converged", or "implausible" where it settled on what cannot be trusted.
+/// "converged", "not converged", or "implausible" where the fit converged to a result that cannot
+/// be trusted.
 std::string RunStatus(const ContactRun& run);
 
-/// What is left of an observation, SI, for people: "position 1.2 0.3 -4 mm".
+/// Residual of an observation, given in SI, as text: "position 1.2 0.3 -4 mm".
 std::string LeftInWords(const Instrument& instrument, const Eigen::VectorXd& left);
 
-/// What the observations that are left out, and how far they are off, are called: "left.csv:7:
-/// ...", one sentence each.
+/// Names the observations that are left out and their residuals: "left.csv:7: ...", one sentence
+/// each.
 std::vector<std::string> DescribeOutliers(const ObservedRobot& model,
                                           const Observations& observations,
                                           const ObservedEstimate& estimate);
@@ -117,7 +121,7 @@ std::vector<std::string> DescribeOutliers(const ObservedRobot& model,
 /// summary.json (docs/formats.md).
 std::string MakeContactSummary(const ContactRun& run);
 
-/// The files of a calibration by name, as MakeCalibrationFiles has them.
+/// The files of a calibration by name, as by MakeCalibrationFiles.
 std::map<std::string, std::string> MakeContactFiles(const Project& project, ContactRun& run);
 
 }  // namespace elastocal

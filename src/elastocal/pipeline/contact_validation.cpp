@@ -44,9 +44,9 @@ std::vector<Eigen::VectorXd> PredictStored(const ContactValidation& run,
              : LeftOf(run.model, observations, values);
 }
 
-/// A robot that is as it was calibrated errs by about the noise that the calibration left. Errors
-/// that are far larger are a warning, and an objection where they matter. Rows of the tables that
-/// are off alone are named.
+/// Compares the errors with the noise that the calibration left, by which an unchanged robot should
+/// err. Errors that are far larger are a warning, and an objection where they matter. Rows of the
+/// tables that are off alone are named.
 void CompareWithCalibration(const Spread& spread, const PredictObservations& predict,
                             ContactValidation& run) {
   constexpr double kAsBefore = 2.0, kLarger = 4.0, kFarLarger = 10.0, kMatters = 0.1;
@@ -78,8 +78,8 @@ void CompareWithCalibration(const Spread& spread, const PredictObservations& pre
   }
 }
 
-/// Rows of another session than they say, for a robot as it was calibrated, where it errs by more
-/// than it should.
+/// Names rows that belong to another session than stated, by a robot as calibrated, where its
+/// errors are larger than they should be.
 void NameExchangedSessions(const std::filesystem::path& calibration, const Project& project,
                            ContactValidation& run) {
   if (run.observations.effects.empty()) return;
@@ -96,7 +96,7 @@ void NameExchangedSessions(const std::filesystem::path& calibration, const Proje
   said.insert(said.begin(), DescribeOtherSessions(found, run.observations));
 }
 
-/// Mistakes in the tables that explain the objections.
+/// Names the mistakes in the tables that explain the objections.
 void NameMistakesOf(ContactValidation& run) {
   if (run.objections.empty()) return;
   const std::vector<std::string> mistakes = FindObservedMistakes(run.model, run.observations);
@@ -142,7 +142,7 @@ ContactValidation ValidateContacts(const Project& project, const std::filesystem
   for (const std::string& row : WorseRows(run.model, run.uncalibrated, run.calibrated)) {
     run.objections.push_back("the calibrated robot is worse here: " + row);
   }
-  // Without registration, a table or tracker that has been moved says nothing of the robot.
+  // Without registration, a displaced table or tracker tells nothing about the robot.
   if (run.surroundings_refitted) {
     for (const std::string& row : LargeErrors(run.model, run.calibrated)) {
       run.objections.push_back("no calibrated robot errs like this: " + row);

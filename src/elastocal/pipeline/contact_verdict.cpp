@@ -20,12 +20,13 @@
 namespace elastocal {
 namespace {
 
-constexpr double kPlainGain = 2.0;      // standard deviations: better by no chance
-constexpr double kLittleBetter = 0.95;  // of the error before: hardly anything was gained
-constexpr double kMostLeftOut = 0.25;   // share of observations
-constexpr double kNoRobot = 10.0;       // times what is expected, as of tables of markers
+constexpr double kPlainGain = 2.0;  // standard deviations from which a gain is not due to chance
+// Ratio to the error before above which hardly anything was gained.
+constexpr double kLittleBetter = 0.95;
+constexpr double kMostLeftOut = 0.25;  // share of observations
+constexpr double kNoRobot = 10.0;      // times the expected errors, as for tables of markers
 
-/// The least error of any kind of row after calibration, over that before.
+/// The smallest ratio, over all kinds of rows, of the error after calibration to that before.
 double BestRatio(const ContactRun& run) {
   const std::vector<RowErrors>& before = ContactRun::Judged(run.uncalibrated).rows;
   const std::vector<RowErrors>& after = ContactRun::Judged(run.calibrated).rows;
@@ -36,7 +37,7 @@ double BestRatio(const ContactRun& run) {
   return best;
 }
 
-/// Kinds of errors of the robot that are more than ten times what is expected of one.
+/// Kinds of errors of the robot that exceed ten times the expected ones.
 std::vector<std::string> WidePriors(const ContactRun& run) {
   std::vector<std::string> wide;
   const std::vector<Source> sources = CommonSources();
@@ -56,16 +57,15 @@ std::vector<std::string> WidePriors(const ContactRun& run) {
   return wide;
 }
 
-/// The file that is deployed has neither springs nor causes: its figures beside those of the whole
-/// model.
+/// Adds the errors of the URDF alone, which has neither springs nor causes, beside those of the
+/// whole model.
 void AddUrdfAlone(ContactRun& run, const std::string& on) {
   run.verdict.remarks.push_back(
       fmt::format("these figures hold with {}; the URDF alone leaves {} {}", CompensationOf(run),
                   FiguresInWords(run, ContactRun::Judged(*run.geometric)), on));
 }
 
-/// How many times as large the tag seems as the project says, by its images that were left out; 1
-/// for what is no tag.
+/// Ratio of a tag's size in the left-out images to its size in the project; 1 for what is no tag.
 double SizeInImages(const ContactRun& run, const std::vector<ObservationOutlier>& left_out) {
   std::vector<double> ratios;
   for (const ObservationOutlier& one : left_out) {
@@ -83,8 +83,8 @@ double SizeInImages(const ContactRun& run, const std::vector<ObservationOutlier>
   return Median(ratios);
 }
 
-/// Of instruments of which there are several, those most of whose observations were left out, if
-/// they are left out more than all others: a sentence each. Such a thing is wrong as a whole.
+/// Instruments, of which there are several alike, most of whose observations were left out, and a
+/// larger share than of any other: a sentence each. Such an instrument is wrong as a whole.
 std::vector<std::string> WrongAsAWhole(const ContactRun& run) {
   constexpr double kMost = 0.6;
   constexpr std::size_t kFewest = 4;
@@ -119,7 +119,7 @@ std::vector<std::string> WrongAsAWhole(const ContactRun& run) {
   return texts;
 }
 
-/// Of what no robot explains, one sentence; nothing where all is plausible.
+/// Adds one objection for errors that no robot has, if there are any.
 void ObjectToNonsense(ContactRun& run) {
   std::vector<std::string> nonsense = WidePriors(run);
   for (std::string& text : LargeErrors(run.model, FiguresOfGood(run))) {
@@ -132,7 +132,8 @@ void ObjectToNonsense(ContactRun& run) {
       fmt::join(nonsense, "; ")));
 }
 
-/// What seems to be wrong with the tables, before what follows from it.
+/// Puts an objection before the others that names the mistakes in the tables. Returns whether there
+/// are any.
 bool NameMistakes(ContactRun& run) {
   if (!run.mistakes) run.mistakes = FindObservedMistakes(run.model, run.observations);
   if (run.mistakes->empty()) return false;
@@ -160,7 +161,7 @@ const char* ThingsOf(const ContactRun& run) {
   return run.touches_only() ? "touches" : "observations";
 }
 
-/// Whether the fit explains what it was made from.
+/// Judges whether the fit explains its own data.
 void JudgeFit(ContactRun& run) {
   Verdict& verdict = run.verdict;
   if (run.calibrated.estimate.fit.termination != Termination::kConverged) {
@@ -175,7 +176,7 @@ void JudgeFit(ContactRun& run) {
   }
 }
 
-/// Whether the calibrated robot is better than the nominal one; `on` what, in words.
+/// Judges whether the calibrated robot is better than the nominal one; `on` names the data.
 void JudgeGain(const std::string& on, ContactRun& run) {
   Verdict& verdict = run.verdict;
   const double ratio = BestRatio(run);
@@ -194,7 +195,7 @@ void JudgeGain(const std::string& on, ContactRun& run) {
   }
 }
 
-/// What seems to be wrong with the tables, before what follows from it.
+/// Puts the faults of the tables before the objections that follow from them.
 void NameFaults(bool mistaken, ContactRun& run) {
   Verdict& verdict = run.verdict;
   if ((verdict.objections.empty() && !mistaken) || !NameMistakes(run)) {

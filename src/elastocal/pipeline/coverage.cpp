@@ -17,7 +17,7 @@ bool Exercises(const Trial& trial, const std::string& chain) {
   return std::find(trial.chains.begin(), trial.chains.end(), chain) != trial.chains.end();
 }
 
-/// Trials of which postures are used.
+/// Trials with postures that are used.
 std::vector<Trial> UsedTrials(const Recording& recording) {
   std::vector<Trial> used;
   for (const int trial : std::set<int>(recording.trial.begin(), recording.trial.end())) {
@@ -26,7 +26,7 @@ std::vector<Trial> UsedTrials(const Recording& recording) {
   return used;
 }
 
-/// Links that carry the robot alone in a trial.
+/// Links on which the robot stands alone in a trial.
 std::map<int, std::string> StandsAloneOn(const Recording& recording) {
   std::map<int, std::string> links;  // with the name of such a trial
   for (const Trial& trial : UsedTrials(recording)) {
@@ -39,7 +39,7 @@ std::vector<int> JointsOf(const Project& project, const Chain& chain) {
   return JointsToBody(project.tree, project.tree.links[chain.tip_link].body);
 }
 
-/// Whether the trials exercise each joint of the chain, be it as one of other chains.
+/// Whether the trials exercise each joint of the chain, if only as a joint of other chains.
 bool ExercisesEachJoint(const Project& project, const Recording& recording, const Chain& chain) {
   std::set<int> exercised;
   for (const Trial& trial : UsedTrials(recording)) {
@@ -54,7 +54,7 @@ bool ExercisesEachJoint(const Project& project, const Recording& recording, cons
 }
 
 /// Markers of a recording that are seen in postures of trials of the chain (`anywhere`: of any
-/// trial); of a table, anywhere.
+/// trial); in a table, in any posture.
 bool Shows(const Recording& recording, const std::string& chain,
            const std::vector<std::string>& markers, bool anywhere) {
   const ObservationMask seen = SeenMask(recording);
@@ -84,7 +84,7 @@ std::set<int> JointsShownBy(const Project& project, const std::vector<std::strin
   return shown;
 }
 
-/// The joints of a chain that its markers show, but no marker that was seen.
+/// Joints of a chain that its markers show but no seen marker shows.
 std::vector<std::string> UnseenJoints(const Project& project, const Recording& recording,
                                       const Chain& chain, const std::vector<std::string>& markers) {
   const std::set<int> shown = JointsShownBy(project, markers);
@@ -98,7 +98,7 @@ std::vector<std::string> UnseenJoints(const Project& project, const Recording& r
   return unseen;
 }
 
-/// The trial that moves the joints of a chain most without being said to exercise it.
+/// The trial that moves the joints of a chain most although it is not said to exercise it.
 std::string MovingTrial(const Project& project, const Chain& chain, const Recording& recording) {
   std::vector<int> coordinates;
   for (int joint : JointsOf(project, chain)) {
@@ -209,7 +209,7 @@ void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict)
                                 "judged on held-out data");
     }
   }
-  // First: what was not measured matters more than how well the rest fits.
+  // First, because missing measurements matter more than the fit of the others.
   verdict.objections.insert(verdict.objections.begin(), objections.begin(), objections.end());
 }
 

@@ -10,35 +10,38 @@
 
 namespace elastocal {
 
-/// What the recordings say about a chain of the project.
+/// What the recordings contain of a chain of the project.
 struct ChainCoverage {
   std::string chain;
-  /// Whether the chain is calibrated: markers on it were seen in trials that are estimated from and
-  /// that exercise it, or that exercise all of its joints with other chains. If not, its joints
-  /// stay as the URDF has them, except those that it shares with other chains or stands on.
+  /// Markers on the chain were seen in trials that are used for the estimate and that exercise it,
+  /// or that exercise all of its joints with other chains. If false, its joints stay as in the
+  /// URDF, except those that it shares with other chains or on which the robot stands.
   bool calibrated = false;
-  bool judged = false;               ///< whether markers on it were seen in trials for validation
-  std::vector<std::string> refused;  ///< trials for calibration of it that cannot be used, and why
-  std::string validation_trial;      ///< one that is said to exercise it; empty: none
-  /// The trial for calibration that moves its joints most without being said to exercise it.
+  bool judged = false;  ///< markers on the chain were seen in trials for validation
+  /// Trials for its calibration that cannot be used, with the reason.
+  std::vector<std::string> refused;
+  /// a trial for validation that is said to exercise it; empty: none
+  std::string validation_trial;
+  /// The trial for calibration that moves its joints most although it is not said to exercise the
+  /// chain.
   std::string moving_trial;
-  /// Joints that markers of the project show, none of which was seen: they stay nominal.
+  /// Joints that markers of the project show but no seen marker shows: they stay nominal.
   std::vector<std::string> unseen;
 };
 
-/// Of the chains that carry markers, in the project's order.
+/// Coverage of the chains that carry markers, in the project's order.
 std::vector<ChainCoverage> FindCoverage(const Project& project, const Measurements& measured);
 
-/// Objections: one for each link on which the robot stands alone in a trial for calibration that
-/// cannot be used, or in a trial for validation, but in no trial that is estimated from. The
-/// springs of that leg's ankle then stay those of the prior, even if other trials calibrate its
-/// chain. None where legs are rigid.
+/// Objections, one for each link on which the robot stands alone in a trial for calibration that
+/// cannot be used, or in a trial for validation, but in no trial that is used for the estimate. The
+/// springs of that leg's ankle then stay at the prior, even if other trials calibrate its chain.
+/// Empty where legs are rigid.
 std::vector<std::string> UnknownStance(const Project& project, const Measurements& measured);
 
-/// Adds an objection for each chain that stays uncalibrated because its trials cannot be used
-/// (whoever records a chain expects it to be calibrated), and for each chain that only trials for
+/// Adds an objection for each chain that stays uncalibrated because its trials cannot be used (a
+/// user who records a chain expects its calibration), and for each chain that only trials for
 /// validation exercise (`chains` of a trial is probably wrong). Adds a remark for each calibrated
-/// chain that is not judged although others are, or that has joints of which nothing was seen.
+/// chain that is not judged although others are, or that has joints of which no marker was seen.
 void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict);
 
 }  // namespace elastocal

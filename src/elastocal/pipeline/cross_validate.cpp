@@ -14,13 +14,13 @@ bool ChoosesElasticity(const ExperimentData& data) {
   return data.open_elasticity.has_value() && data.as_recorded.posture_count() <= kMostNested;
 }
 
-/// Of the choice of elasticity within a fold. Every fold asks anew, so that the folds within folds
-/// take most of the time of a table; half as many as of the choice itself choose as well
+/// Folds of the choice of elasticity within a fold. Every fold chooses anew, so that these inner
+/// folds take most of the time of a table. Half as many as in the choice itself choose as well
 /// (docs/accuracy.md).
 constexpr int kInnerFolds = 5;
 
-/// The project with the elastic joints and, where all postures took some, the causes that these
-/// postures choose.
+/// The project with the elastic joints that these postures choose and, where all postures took
+/// some, the causes.
 Project ProjectOfFold(const ExperimentData& data, const Measurements& training) {
   Project project = data.project;
   if (data.chose_causes && MayChooseCauses(training.calibration.posture_count())) {
@@ -55,7 +55,7 @@ FoldData MakeExperimentFold(const ExperimentData& data, const std::vector<int>& 
   return fold;
 }
 
-/// Of the markers as recorded.
+/// Mask of the used observations by the markers as recorded.
 ObservationMask UsedAsRecorded(const RecordedModel& robot, const ModelComparison& comparison,
                                const Recording& as_recorded) {
   const ObservationMask& used = comparison.largest().used;

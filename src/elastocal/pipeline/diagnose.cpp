@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kLevel = 0.05;
 
-/// What a cause is by, for the sentence.
+/// Variable of a cause, as text.
 const char* ByWhat(CorrectionShape shape) {
   switch (shape) {
     case CorrectionShape::kSin:
@@ -89,8 +89,8 @@ const Parameter& ParameterOf(const CauseReport& report, int index) {
   return report.parameters[static_cast<std::size_t>(index)];
 }
 
-/// The estimate that stands for a cause: the amplitude of an eccentricity or of a tilt, else the
-/// surest one.
+/// Estimate that represents a cause: the amplitude of an eccentricity or of a tilt, else the
+/// parameter that is known best.
 std::string SizeOf(const CauseReport& report, const CauseFinding& finding) {
   std::size_t surest = 0;
   for (std::size_t i = 0; i < finding.estimate.size(); ++i) {
@@ -115,7 +115,7 @@ std::string SizeOf(const CauseReport& report, const CauseFinding& finding) {
   return fmt::format("{:.{}f} +- {:.{}f} {}", factor * value, decimals, sd, decimals, unit);
 }
 
-/// Sets a figure of errors under its name with the unit: mm, or standard deviations of noise.
+/// Stores an error under its name with the unit: mm, or standard deviations of noise.
 void SetError(const CauseReport& report, const std::string& name, double error, Json& json) {
   json[name + "_" + report.error_unit()] = report.error_factor() * error;
 }
@@ -124,8 +124,7 @@ const char* UnitInWords(const CauseReport& report) {
   return report.in_metres ? "mm" : "standard deviations of noise";
 }
 
-/// "2.66 mm", "1.02 standard deviations of noise".
-/// Decimals of a number: two, or as many as two significant digits take.
+/// Decimals with which a number is written: two, or more where two significant digits need them.
 int DecimalsOf(double number) {
   return number > 0.0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(number))), 2, 6) : 2;
 }
@@ -135,7 +134,8 @@ std::string ErrorInWords(const CauseReport& report, double error) {
   return fmt::format("{:.{}f} {}", shown, DecimalsOf(shown), UnitInWords(report));
 }
 
-/// "from 2.66 to 2.30 mm": their difference has two significant digits or more.
+/// A change of errors as text: "from 2.66 to 2.30 mm", with at least two significant digits in the
+/// difference.
 std::string FallInWords(const CauseReport& report, double before, double after) {
   const double factor = report.error_factor(), fall = factor * std::abs(before - after);
   const int decimals = DecimalsOf(fall);

@@ -9,7 +9,7 @@
 
 namespace elastocal {
 
-/// What is left of the errors of a calibration, and why.
+/// The causes of the errors that a calibration leaves.
 struct Diagnosis {
   CauseReport report;
   std::string calibration_fingerprint;
@@ -18,18 +18,18 @@ struct Diagnosis {
   double seconds = 0.0;
 };
 
-/// Studies the recording that the calibration in a folder was made from (runs.json beside it), with
-/// the mistakes corrected that it was told to correct; of tables of observations also beside the
-/// earlier calibration that it began with.
-/// Throws InputError where that, the project or the recording is not there or has changed.
+/// Studies the recording from which the calibration in a folder was made (runs.json beside it),
+/// with the mistakes corrected that calibrate was told to correct. For tables of observations the
+/// study is beside the earlier calibration that was the prior. Throws InputError where the record,
+/// the project or the recording is missing or has changed.
 Diagnosis Diagnose(const std::filesystem::path& folder, const std::filesystem::path& project,
                    std::optional<std::uint64_t> seed);
 
-/// A cause in words: "arm_6_joint: hysteresis of 7.6 +- 0.8 mrad, by the direction of its last
+/// A cause as text: "arm_6_joint: hysteresis of 7.6 +- 0.8 mrad, by the direction of its last
 /// motion; alone it takes the held-out error from 2.66 to 2.30 mm".
 std::string DescribeCause(const CauseReport& report, const CauseFinding& finding);
 
-/// The diagnosis in words, a sentence each.
+/// The diagnosis as text, a sentence each.
 std::vector<std::string> DescribeDiagnosis(const CauseReport& report);
 
 /// candidates[], chosen[] and the held-out errors, as JSON (docs/formats.md).

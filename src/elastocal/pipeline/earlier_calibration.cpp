@@ -21,10 +21,11 @@
 namespace elastocal {
 namespace {
 
-/// Zeros drift where encoders are homed anew; links and springs do not change, but by an accident.
+/// Drift of parameters that are no zeros, relative to zeros. Zeros change where encoders are homed
+/// anew; links and springs only by an accident.
 constexpr double kDriftOfOthers = 0.25;
 
-/// Errors with another frame of the root link are those of other quantities.
+/// Refuses a calibration with another gauge, whose errors are other quantities.
 void CheckGauge(const std::filesystem::path& calibration, const Project& project) {
   const CalibrationEstimate earlier = ReadEstimate(FindCalibrationFiles(calibration).calibration);
   const std::string wanted = GaugeText(project.calibration.gauge);
@@ -34,8 +35,8 @@ void CheckGauge(const std::filesystem::path& calibration, const Project& project
                    "'; the gauge of the earlier calibration was expected");
 }
 
-/// By how much the project has markers elsewhere than that of the calibration had them, m, by the
-/// names of their parameters: of links where they are the same.
+/// Nominal position of markers now minus that in the calibration, m, by the names of their
+/// parameters; only for links that are `same`.
 std::map<std::string, double> NominalShifts(const CalibrationEstimate& calibration,
                                             const ErrorModel& model,
                                             const std::vector<LinkMarkers>& markers) {
@@ -54,15 +55,15 @@ std::map<std::string, double> NominalShifts(const CalibrationEstimate& calibrati
   return shifts;
 }
 
-/// The same, with nothing concluded from the markers on some of the links.
+/// The same list, where the markers on `links` are no longer `same`.
 std::vector<LinkMarkers> LeftOpen(std::vector<LinkMarkers> markers,
                                   const std::vector<std::string>& links) {
   for (LinkMarkers& one : markers) one.same = one.same && !std::ranges::count(links, one.link);
   return markers;
 }
 
-/// A few postures, with every joint free to have moved, do not tell how much the model errs from
-/// one to the next: no less than in the many of the earlier calibration.
+/// Raises the cluster factor to that of the earlier calibration's many postures. A few postures
+/// with every joint free to have moved do not tell how much the model errs from one to the next.
 void ScatterAsBefore(const StoredCalibration& earlier, CalibrationResult& estimate) {
   if (!(estimate.marker_sd > 0.0)) return;
   const double variances = std::pow(earlier.scatter_sd / estimate.marker_sd, 2);
@@ -70,10 +71,11 @@ void ScatterAsBefore(const StoredCalibration& earlier, CalibrationResult& estima
   estimate.posterior.cluster_factor = variances;
 }
 
-/// The joints that have moved (`find`), if the markers have not on links where they are the same.
-/// These are left open on one link after another, because they may have moved as one piece: where
-/// nothing has changed then, the link is named beside the one joint that is accused; several joints
-/// are not accused of what one cluster explains.
+/// Finds the joints that have moved (`find`), under the condition that markers on links marked
+/// `same` have not. The condition is then left out for one link after another, because its markers
+/// may have moved as one piece. If nothing has changed without it, the link is added to
+/// `or_markers` of the one accused joint; where several joints are accused, the cluster is taken to
+/// have moved instead.
 JointCheck CheckBesideMarkers(
     const std::vector<LinkMarkers>& markers,
     const std::function<JointCheck(const std::vector<LinkMarkers>&)>& find) {
@@ -257,7 +259,7 @@ std::vector<std::string> DescribeForgotten(const JointCheck& check, const std::s
 }
 
 std::vector<std::string> DescribeWidened(const JointCheck& check, const std::string& source) {
-  constexpr double kTold = 4.0;  // less may be chance
+  constexpr double kTold = 4.0;  // a smaller factor may be chance
   if (check.widened < kTold) return {};
   return {
       fmt::format("{}: errs by {:.2g} times its standard deviations in these postures (errors "
@@ -271,7 +273,7 @@ EarlierEstimate MostProbable(const JointCheck& check, const CalibrationResult& e
                              const Prior& prior) {
   const DataInformation data = InformationOfData(estimate, fitted_with);
   EarlierEstimate best;
-  double most = 0.0;  // of the best; not a number under an infinite prior, which keeps all days
+  double most = 0.0;  // evidence of `best`; NaN with an infinite prior, which then keeps all days
   for (const double share : {1.0, 0.25, 1.0 / 16.0, 1.0 / 64.0, 0.0}) {
     EarlierEstimate known = ForgetMoved(check, after(share * days), estimate.model, prior);
     const double evidence = LogEvidence(data, MeanBefore(estimate, data, known),
@@ -298,7 +300,8 @@ std::string DescribeWorseUpdate(const std::filesystem::path& calibration,
                                 CalibrationOptions options, double updated) {
   constexpr double kClearly = 1.1;
   options.earlier = {};
-  // Markers and waist fit the earlier one to all postures, and the update to those of other folds.
+  // Markers and waist are fitted to all postures with the earlier calibration, but to those of
+  // other folds with the update.
   const auto fitted = static_cast<double>(std::ranges::count_if(
       robot.model.parameters, [](const Parameter& one) { return IsExternal(one.kind); }));
   const auto rows = static_cast<double>(3 * SeenMask(recording).count());

@@ -7,8 +7,8 @@
 
 namespace elastocal {
 
-/// The links at the ends of the project's chains (hands, feet, a camera) that joints move, each
-/// once, in the order of the chains.
+/// Links at the ends of the project's chains (hands, feet, a camera) that joints move, each once,
+/// in the order of the chains.
 std::vector<int> EndsOfLimbs(const Project& project);
 
 }  // namespace elastocal

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kNearlyOne = 5e-3;  // m: between parallel axes
+constexpr double kNearlyOne = 5e-3;  // m: distance between parallel axes
 
 ChainInspection InspectChain(const std::string& name, const RobotTree& tree,
                              const std::vector<Marker>& markers, const Project& project,
@@ -42,8 +42,8 @@ std::vector<Marker> MarkersOf(const Project& project, const Chain& chain) {
   return markers;
 }
 
-/// With a free root, the markers on the body that the chain begins at are what the others are seen
-/// from.
+/// Adds the markers on the body at which the chain begins. With a free root, they are the reference
+/// for the others.
 void AddMarkersOf(const Project& project, int body, std::vector<Marker>& markers) {
   for (const Marker& marker : project.markers) {
     if (project.tree.links[marker.link].body == body) markers.push_back(marker);
@@ -116,7 +116,7 @@ Json LinkagesJson(const RobotTree& tree) {
   return linkages;
 }
 
-/// What it means for the user that axes are nearly special.
+/// Consequence for the user of axes that are nearly special, as text.
 std::string DescribeNearly(const RobotTree& tree, const SpecialGeometry& group) {
   std::string names;
   for (int joint : group.joints) names += (names.empty() ? "" : ", ") + tree.joints[joint].name;

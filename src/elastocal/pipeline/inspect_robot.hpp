@@ -11,32 +11,33 @@
 
 namespace elastocal {
 
+/// Settings of InspectRobot.
 struct InspectionOptions {
-  /// Name patterns of parameters held at nominal, instead of the project's; nothing: the project's.
+  /// Name patterns of parameters held at nominal; empty: those of the project.
   std::optional<std::vector<std::string>> hold = {};
   ExternalPriority external = ExternalPriority::kFirst;
-  std::optional<std::uint64_t> seed = {};  ///< instead of the project's
+  std::optional<std::uint64_t> seed = {};  ///< default: the project's
 };
 
-/// What can be identified of a chain by its own markers.
+/// Parameters of a chain that its own markers can identify.
 struct ChainInspection {
-  std::string name;  ///< of the chain; "(all markers)" for the whole robot
-  int joints = 0;    ///< that move its markers
+  std::string name;  ///< name of the chain; "(all markers)" for the whole robot
+  int joints = 0;    ///< number of joints that move its markers
   ErrorModel model;
   BaseParameters base;
-  std::vector<int> lost;  ///< parameters of the model lost by special marker positions
+  std::vector<int> lost;  ///< parameters of the model that are lost by special marker positions
 };
 
 struct RobotInspection {
-  std::vector<JointPlacement> placements;  ///< eq. 1, one a joint of the tree
-  std::vector<ChainInspection> chains;     ///< those with markers, then the whole robot
+  std::vector<JointPlacement> placements;  ///< constants of eq. 1, one entry a joint of the tree
+  std::vector<ChainInspection> chains;     ///< chains with markers, then the whole robot
   double mass = 0.0;                       ///< kg
   std::vector<std::string> warnings;
 };
 
-/// The robot's modified Denavit-Hartenberg constants (eq. 1), and which error parameters markers
-/// can identify (section 2.1), chain by chain and altogether. Throws InputError for a pattern of
-/// `hold` that matches no parameter.
+/// Determines the robot's modified Denavit-Hartenberg constants (eq. 1), and which error parameters
+/// markers can identify (section 2.1), for each chain and for the whole robot. Throws InputError
+/// for a pattern of `hold` that matches no parameter.
 RobotInspection InspectRobot(const Project& project, const InspectionOptions& options = {});
 
 /// The inspection for programs (docs/formats.md), SI.

@@ -11,7 +11,7 @@
 namespace elastocal {
 namespace {
 
-/// Standard deviations that are too small by less than this may be right.
+/// Standard deviations that are too small by less than this factor are not enlarged.
 constexpr double kTooSmall = 1.5;
 
 bool IsKnocked(const std::string& marker, const Recording& recording,

@@ -11,18 +11,19 @@
 
 namespace elastocal {
 
-/// The measured places (ReadMarkerPlaces) of markers that the recording has; no file: none. Those
-/// of clusters that were knocked in the experiment are left out, because they are of one side of
-/// the knock; warnings say so. Throws InputError where the recording has none of the markers.
+/// Reads measured positions (ReadMarkerPlaces) of markers that the recording has; empty without a
+/// file. Markers that were knocked in the experiment are left out, because their position holds on
+/// one side of the knock only; warnings say so. Throws InputError where the recording has none of
+/// the markers.
 std::vector<MarkerMeasurement> OpenMarkerPlaces(const std::filesystem::path& file,
                                                 const Project& project, const Recording& recording,
                                                 const std::vector<Knock>& knocks,
                                                 std::vector<std::string>& warnings);
 
-/// The estimate of the largest model with these places known. A place that contradicts the data and
-/// the other places (JudgeMarkers) is left out and named; where places scatter by more than their
-/// standard deviations say, these are made larger, and a warning says so. `options.earlier` is in
-/// the end what was known.
+/// The estimate of the largest model with these positions as prior knowledge. A position that
+/// contradicts the data and the other positions (JudgeMarkers) is left out and named. Where
+/// positions scatter by 1.5 times their standard deviations or more, these are enlarged, and a
+/// warning says so. `options.earlier` is in the end the prior knowledge that was used.
 CalibrationResult CalibrateWithPlaces(std::vector<MarkerMeasurement> places,
                                       const RecordedModel& robot, const Recording& recording,
                                       CalibrationOptions& options,

@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-/// By number of a trial among all that were read, its number in a recording; -1: it is in another.
+/// For each trial that was read: its number in a recording; -1: it is in another.
 std::vector<int> TrialsIn(const Recording& recording, const std::vector<TrialSummary>& trials) {
   std::vector<int> numbers;
   for (const TrialSummary& read : trials) {

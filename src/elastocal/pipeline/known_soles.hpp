@@ -10,9 +10,9 @@
 
 namespace elastocal {
 
-/// What gives way below the markers of the feet, by all trials that were recorded. Where these do
-/// not tell it, what the calibration `earlier` (a folder or file; empty: none) has of it. How feet
-/// share the weight follows from `measured` as it is, mistakes undone.
+/// Compliance of the soles below the markers of the feet, by all trials that were recorded; where
+/// these do not tell it, by the calibration `earlier` (a folder or file; empty: none). The
+/// distribution of weight between the feet follows from `measured`, with mistakes corrected.
 std::vector<SoleSpring> KnownSoles(const Project& project, const CalibrationResult& result,
                                    const Measurements& measured,
                                    const std::filesystem::path& earlier);

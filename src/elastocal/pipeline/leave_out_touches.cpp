@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMostInTheAir = 0.25;  // share of the touches of a plate
 
-/// "12", "5.9 to 39": mm.
+/// Heights of touches as text, mm: "12", "5.9 to 39".
 std::string HeightsInWords(const std::vector<TouchInTheAir>& touches) {
   const auto [low, high] =
       std::minmax_element(touches.begin(), touches.end(),
@@ -30,8 +30,8 @@ std::string HeightsInWords(const std::vector<TouchInTheAir>& touches) {
   return least == most ? least : least + " to " + most;
 }
 
-/// Whether the touches lie on another plane, so far as a robot tells: those in the air are
-/// anywhere.
+/// Whether the touches lie on another plane, as far as a robot tells: touches in the air have any
+/// height.
 bool AreAsHigh(const std::vector<TouchInTheAir>& touches) {
   constexpr std::size_t kFewestOfAPlane = 4;
   constexpr double kScatter = 0.25;  // of the height
@@ -43,7 +43,7 @@ bool AreAsHigh(const std::vector<TouchInTheAir>& touches) {
                      [&](double height) { return std::abs(height - middle) <= kScatter * middle; });
 }
 
-/// Touches of each plate that some observations have.
+/// Number of touches of each plate.
 std::vector<int> TouchesByPlate(const ObservedRobot& model, const Observations& observations) {
   std::vector<int> touches(model.setup.plates.size(), 0);
   for (const Observation& of : observations.all) {

@@ -10,22 +10,24 @@
 
 namespace elastocal {
 
-/// "5 of 40 touches seem to be none: by the others, the plate stood 5.9 to 39 mm above its table in
-/// left.csv:7, 12".
+/// Text such as "5 of 40 touches seem to be none: by the others, the plate stood 5.9 to 39 mm above
+/// its table in left.csv:7, 12".
 std::string DescribeTouchesInTheAir(const ObservedRobot& model, const Observations& observations,
                                     const std::vector<TouchInTheAir>& air);
 
-/// Leaves touches in the air (FindTouchesInTheAir) out of the observations, and returns whether
+/// Removes touches in the air (FindTouchesInTheAir) from the observations, and returns whether
 /// there were any. A few of them give a warning. More than a quarter of a plate's touches give the
 /// objection `wrong_rows`, as with outliers: too few are left to tell which are right.
 bool LeaveOutTouchesInTheAir(ContactRun& run);
 
-/// "3 of 40 rows seem to be of another session (contact.sessions, or the file) than they say: ...".
+/// Text such as "3 of 40 rows seem to be of another session (contact.sessions, or the file) than
+/// they say: ...".
 std::string DescribeOtherSessions(const std::vector<OtherSession>& found,
                                   const Observations& observations);
 
-/// Gives rows that are of another session than they say (FindExchangedSessions) to that session,
-/// and returns whether there were any. `wrong_rows` is then the objection that names them.
+/// Assigns rows to the session to which they belong instead of the stated one
+/// (FindExchangedSessions), and returns whether there were any. `wrong_rows` is then the objection
+/// that names them.
 bool ExchangeSessions(ContactRun& run);
 
 }  // namespace elastocal

@@ -10,16 +10,17 @@ namespace elastocal {
 /// A number, or null for infinity and NaN, which JSON does not have.
 nlohmann::ordered_json Finite(double value);
 
-/// How well the ends of limbs are known in the frame of the root link: `frames` of summary.json.
+/// Expected errors of the ends of limbs in the frame of the root link: `frames` of summary.json.
 nlohmann::ordered_json FramesJson(const CalibrationRun& run);
 
-/// How well the project has the places of markers (`nominal_places`); null where it is not told.
+/// How well the project knows its marker positions (`nominal_places`); null where the recording
+/// does not tell it.
 nlohmann::ordered_json NominalPlacesJson(const CalibrationResult& result);
 
-/// How stiff the legs are at the waist: `legs` of summary.json. Null for a robot without legs.
+/// Stiffness of the legs at the waist: `legs` of summary.json. Null for a robot without legs.
 nlohmann::ordered_json LegsJson(const CalibrationRun& run);
 
-/// What gives way below the markers of the feet (`soles` of summary.json).
+/// Compliance below the markers of the feet (`soles` of summary.json).
 nlohmann::ordered_json SolesJson(const CalibrationRun& run);
 
 }  // namespace elastocal

@@ -10,11 +10,11 @@
 namespace elastocal {
 namespace {
 
-constexpr double kMostAlone = 0.25;  // of an instrument's observations
-constexpr int kFewestOthers = 4;     // of which each is predicted by three
+constexpr double kMostAlone = 0.25;  // share of an instrument's observations
+constexpr int kFewestOthers = 4;     // then three predict each
 constexpr double kOffLikeWorst = 0.5;
 
-/// Root mean square over the coordinates of the row of one observation.
+/// Root mean square of an observation's residual over the coordinates of the row `row`.
 double OffBy(const Instrument& instrument, const std::string& row, const Eigen::VectorXd& left) {
   const std::vector<RowMeaning> rows = instrument.rows();
   double squares = 0.0, count = 0.0;
@@ -33,7 +33,7 @@ OffAlone FindOffAlone(const ObservedRobot& model, const Observations& observatio
   std::set<int> out;
   for (;;) {
     const std::vector<Eigen::VectorXd> left = predict(WithoutObservations(observations, out));
-    std::vector<std::pair<int, double>> own;  // observation, and how far it is off
+    std::vector<std::pair<int, double>> own;  // index of an observation, and its error
     std::size_t next = 0;
     double squares = 0.0, worst = 0.0;
     for (int i = 0; i < observations.count(); ++i) {

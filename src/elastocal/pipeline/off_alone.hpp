@@ -9,22 +9,23 @@
 
 namespace elastocal {
 
-/// What is left of each observation by a robot that is known.
+/// Computes the residual of each observation for a known robot.
 using PredictObservations = std::function<std::vector<Eigen::VectorXd>(const Observations&)>;
 
-/// Some observations of an instrument, and how far its others are off.
+/// Some observations of an instrument that are off, and the error of its others.
 struct OffAlone {
   std::vector<int> observations;
-  double rms_of_others = 0.0;  ///< SI
+  double rms_of_others = 0.0;  ///< root mean square error of the other observations, SI
 };
 
-/// The few observations of an instrument to leave out so that its others are off by no more than
-/// `most` (root mean square, SI), the worst first: at most a quarter of them. None where more would
-/// have to go, or where fewer than four would be left.
+/// The few observations of an instrument without which its others have an error of at most `most`
+/// (root mean square, SI). In each round those at least half as far off as the worst are left out,
+/// at most a quarter altogether. Empty where more would have to be left out, or where fewer than
+/// four would remain.
 OffAlone FindOffAlone(const ObservedRobot& model, const Observations& observations,
                       const RowErrors& row, double most, const PredictObservations& predict);
 
-/// "left.csv:7, 12, right.csv:3": where observations are.
+/// Positions of observations in their files, as text: "left.csv:7, 12, right.csv:3".
 std::string PlacesOf(const std::vector<int>& some, const Observations& observations);
 
 }  // namespace elastocal

@@ -13,7 +13,7 @@
 namespace elastocal {
 namespace {
 
-/// The worst that is to be said of three markers of a cluster; empty where they are fine.
+/// The worst fault of three markers of a cluster, as text; empty where they are well placed.
 std::string TriangleFault(const std::array<Eigen::Vector3d, 3>& p) {
   constexpr double kHardlyApart = 0.010, kAlike = 0.002, kFlat = 0.05;  // m, m, share
   std::array<double, 3> sides = {(p[0] - p[1]).norm(), (p[1] - p[2]).norm(), (p[2] - p[0]).norm()};
@@ -39,7 +39,7 @@ std::string TriangleFault(const std::array<Eigen::Vector3d, 3>& p) {
 
 void WarnOfCluster(const Project& project, const MarkerCluster& cluster,
                    std::vector<std::string>& warnings) {
-  constexpr double kFar = 0.25;  // of the robot's size: of twice its longest branch
+  constexpr double kFar = 0.25;  // share of the robot's size, which is twice its longest branch
   const auto at = [&](int m) { return project.markers[Size(m)].p_link_marker; };
   const auto say = [&](const std::string& what) {
     warnings.push_back("cluster '" + cluster.name + "': " + what);
@@ -64,8 +64,8 @@ bool Carries(const RobotTree& tree, int body, int carried) {
   return carried > 0 && tree.joints[Size(carried - 1)].parent_body == body;
 }
 
-/// Markers that are deep in another part while the robot rests. The spheres are thicker than what
-/// they cover, and those of neighbours overlap.
+/// Warns of markers that are deep inside another part in the posture of rest. The spheres are
+/// thicker than what they cover, and those of neighbours overlap.
 void WarnOfHiddenMarkers(const Project& project, std::vector<std::string>& warnings) {
   constexpr double kDeep = 0.5;  // of the radius
   const RobotTree& tree = project.tree;
@@ -88,7 +88,7 @@ void WarnOfHiddenMarkers(const Project& project, std::vector<std::string>& warni
   }
 }
 
-/// Joints at the end of a chain beyond which there is no marker.
+/// Warns of joints at the end of a chain beyond which there is no marker.
 void WarnOfBlindEnd(const Project& project, const Chain& chain,
                     std::vector<std::string>& warnings) {
   const RobotTree& tree = project.tree;

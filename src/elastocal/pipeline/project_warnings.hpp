@@ -8,10 +8,10 @@
 
 namespace elastocal {
 
-/// What in a project or its URDF can be read but will cost something, a sentence each: joints that
-/// cannot move; clusters whose markers are in a line, hardly apart, at like distances or far from
-/// their link; chains whose last joints move no marker; inertias that no body has, and masses that
-/// are missing.
+/// Warnings about what can be read in a project or its URDF but costs accuracy, a sentence each:
+/// joints that cannot move; clusters whose markers lie on a line, close together, at similar
+/// distances or far from their link; markers inside other parts; chains whose last joints move no
+/// marker; inertias that no body has, and missing masses.
 std::vector<std::string> ProjectWarnings(const Project& project);
 
 }  // namespace elastocal

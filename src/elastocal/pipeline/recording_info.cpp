@@ -25,7 +25,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The line by which a TSV is known as one of `convert`; QTM itself writes such lines.
+/// The line by which a TSV is recognised as converted; QTM itself writes such lines.
 constexpr const char* kDescription = "DESCRIPTION\tWritten by elastocal convert\r\n";
 
 /// Whether every number of a line has the shortest digits, as TableWriter writes them.
@@ -79,7 +79,7 @@ void LookAtLog(const JointLog& log, RecordingInfo& info) {
   }
 }
 
-/// Rotates positions so that the axis `up` becomes z: each frame's numbers change places and signs.
+/// Rotates positions so that the axis `up` becomes z: coordinates change places and signs.
 void TurnUp(const std::string& up, Eigen::MatrixXd& positions) {
   for (Eigen::Index column = 0; column < positions.cols(); column += 3) {
     const Eigen::VectorXd x = positions.col(column), y = positions.col(column + 1),
@@ -117,7 +117,7 @@ std::string ConvertMarkers(RecordingFile& file, const std::string& up) {
   return text.insert(text.find("DATA_INCLUDED"), kDescription);
 }
 
-/// An option of reading, and the formats in which it tells something.
+/// A reader's option, and the formats on which it has an effect.
 struct IdleCheck {
   bool given;
   const char* option;
@@ -146,7 +146,7 @@ void RefuseIdleOptions(const std::string& path, const std::string& format,
   }
 }
 
-/// The part of a file that has one. Throws InputError where it has both or none.
+/// The only part of a file. Throws InputError where it has both or none.
 RecordingPart OnlyPart(const std::string& path, const RecordingFile& file) {
   if (file.markers && file.joints) {
     throw InputError(path +

@@ -24,9 +24,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRuns = "runs.json";
 constexpr const char* kPage = "report.html";
-constexpr const char* kProject = "project.yaml";  // as init writes it
+constexpr const char* kProject = "project.yaml";  // written by init
 
-/// The files of a folder as they are after the publication of `outputs` (null: as they are).
+/// The files of a folder after the publication of `outputs` (null: as they are now).
 class FolderAfter {
  public:
   FolderAfter(const fs::path& folder, const OutputSet* outputs)
@@ -34,7 +34,7 @@ class FolderAfter {
 
   bool IsChanging() const { return outputs_ != nullptr; }
 
-  /// Nothing where there is no such file.
+  /// Contents of a file; nothing where it does not exist.
   std::optional<std::string> Text(const std::string& name) const {
     const fs::path file = folder_ / name;
     if (outputs_ != nullptr && outputs_->IsDeclared(file)) {
@@ -69,8 +69,8 @@ std::set<std::string> RegularFiles(const fs::path& folder) {
   return names;
 }
 
-/// The records so far; empty where there are none that can be read, which is no reason to lose a
-/// result.
+/// The records so far. Empty where there are none, or where they cannot be read, which is no reason
+/// to lose a result.
 std::string EarlierRuns(const fs::path& folder) {
   try {
     return FolderAfter(folder, nullptr).Text(kRuns).value_or("");
@@ -79,7 +79,7 @@ std::string EarlierRuns(const fs::path& folder) {
   }
 }
 
-/// The folder's calibration; nothing where there is none.
+/// The calibration in a folder; nothing where there is none.
 std::optional<LabelledCalibration> CalibrationOf(const fs::path& folder, const FolderAfter& after) {
   const auto text = after.Text("calibration.yaml");
   if (!text) return std::nullopt;
@@ -92,7 +92,7 @@ std::optional<LabelledCalibration> CalibrationOf(const fs::path& folder, const F
   return calibration;
 }
 
-/// Takes away what tells of another calibration than the folder's.
+/// Removes sources that refer to another calibration than the folder's.
 void RemoveOutdated(const std::string& calibration, ReportSources& sources) {
   for (const char* name : {"deployment.json", "diagnosis.json", "validation.json"}) {
     const auto file = sources.files.find(name);
@@ -105,7 +105,7 @@ void RemoveOutdated(const std::string& calibration, ReportSources& sources) {
   }
 }
 
-/// The page of a folder with files of these names.
+/// The page of a folder that will have files of these names.
 std::string MakePageOf(const fs::path& folder, const std::set<std::string>& names,
                        const FolderAfter& after, const std::string& version,
                        const std::vector<fs::path>& earlier) {
@@ -115,7 +115,7 @@ std::string MakePageOf(const fs::path& folder, const std::set<std::string>& name
   }
   if (names.contains(kProject) && !after.IsChanging() && !sources.files.contains("summary.json") &&
       !sources.files.contains("validation.json")) {
-    std::vector<std::string> warnings;  // the view lacks a mesh: it can be seen
+    std::vector<std::string> warnings;  // the view shows that a mesh is missing
     sources.files["robot_data.json"] =
         MakeRobotDataJson(MakeRobotView(ReadProject(folder / kProject), warnings));
   }
@@ -176,7 +176,7 @@ std::string SetResults(const fs::path& folder, const std::map<std::string, std::
       outputs.Set(folder / kPage,
                   MakePageOf(folder, names, FolderAfter(folder, &outputs), record.version, {}));
     } catch (const InputError& error) {
-      // The results themselves are fine: something else in the folder cannot be shown.
+      // The results themselves are valid: something else in the folder cannot be shown.
       why_no_page = std::string("no report.html: ") + error.what();
     }
   }

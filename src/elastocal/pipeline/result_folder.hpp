@@ -23,44 +23,43 @@ namespace elastocal {
 ///   SetResults(folder, MakeCalibrationFiles(project, run), record, outputs);
 ///   outputs.Publish();
 
-/// Declares files of these names in the folder, and runs.json, report.html and SHA256SUMS with
-/// them. Throws InputError for a file that is there and no result (CheckOwn).
+/// Declares files of these names in the folder, with runs.json, report.html and SHA256SUMS. Throws
+/// InputError for an existing file that is no result (CheckOwn).
 void DeclareResults(const std::filesystem::path& folder, const std::vector<std::string>& names,
                     OutputSet& outputs);
 
-/// Sets the contents of declared files by name, runs.json with this run in it, and report.html from
-/// what the folder will hold. Returns why there is no report.html; empty where there is one. Call
-/// it once for a folder, after Prepare.
+/// Sets the contents of declared files by name, of runs.json with this run added, and of
+/// report.html for the folder's new state. Returns why there is no report.html; empty where there
+/// is one. Call it once for a folder, after Prepare.
 std::string SetResults(const std::filesystem::path& folder,
                        const std::map<std::string, std::string>& files, const RunRecord& record,
                        OutputSet& outputs);
 
-/// The same for the page alone, which may be in the folder or elsewhere.
+/// As DeclareResults and SetResults, for the page alone, which may be in the folder or elsewhere.
 void DeclarePage(const std::filesystem::path& folder, const std::filesystem::path& page,
                  OutputSet& outputs);
 void SetPage(const std::filesystem::path& folder, const std::filesystem::path& page,
              std::string contents, OutputSet& outputs);
 
-/// Declares a JSON file that the user names. Throws InputError where something else than JSON is
-/// there, or a result of another command. Call it after DeclareResults.
+/// Declares a JSON file that the user names. Throws InputError where a file exists there that is no
+/// JSON, or is a result of another command. Call it after DeclareResults.
 void DeclareJson(const std::filesystem::path& file, OutputSet& outputs);
 
-/// The page of a folder as it is. Where nothing was calibrated or validated yet and project.yaml is
-/// there, it draws the robot as that has it now. `version`: of the program that makes it.
-/// `earlier`: folders of earlier calibrations of this robot, or calibration.yaml files, the oldest
-/// first.
+/// The page of a folder in its present state. Before any calibration or validation, a folder with
+/// project.yaml shows the robot of that project. `version` is that of the program. `earlier` holds
+/// folders of earlier calibrations of this robot, or their calibration.yaml, the oldest first.
 ///
-/// Throws InputError where there is nothing to show, or something that cannot be read, and for a
-/// folder of two runs (CheckChecksums).
+/// Throws InputError where there is nothing to show, where something cannot be read, and for a
+/// folder with files of two runs (CheckChecksums).
 std::string MakeFolderPage(const std::filesystem::path& folder, const std::string& version,
                            const std::vector<std::filesystem::path>& earlier = {});
 
-/// Files of a folder that its page is made from, and those of `earlier`. Throws InputError where
-/// there is no such folder, or an earlier one without calibration.yaml.
+/// Files from which the page of a folder is made, and those of `earlier`. Throws InputError where
+/// the folder does not exist, or an earlier one has no calibration.yaml.
 std::vector<std::filesystem::path> PageInputs(const std::filesystem::path& folder,
                                               const std::vector<std::filesystem::path>& earlier);
 
-/// What to say where the program was built without the page.
+/// Message where the program was built without the page.
 extern const char* const kNoPage;
 
 }  // namespace elastocal

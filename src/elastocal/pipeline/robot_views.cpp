@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The joints between the ends of a chain that move, by name.
+/// The movable joints between the ends of a chain, by name.
 ChainView MakeChainView(const Chain& chain, const RobotTree& tree) {
   ChainView view{chain.name, {}};
   const std::vector<int> below = JointsToBody(tree, tree.links[chain.from_link].body);
@@ -26,8 +26,8 @@ ChainView MakeChainView(const Chain& chain, const RobotTree& tree) {
   return view;
 }
 
-/// Where a mesh of a URDF is: beside it or, of `package://NAME/rest`, below the folder NAME that
-/// the URDF is in.
+/// Path of a mesh of a URDF: relative to the URDF or, for `package://NAME/rest`, below the folder
+/// NAME that contains the URDF.
 fs::path MeshPath(const std::string& name, const fs::path& urdf) {
   const std::string scheme = "package://";
   if (!name.starts_with(scheme)) return urdf.parent_path() / name;
@@ -39,7 +39,7 @@ fs::path MeshPath(const std::string& name, const fs::path& urdf) {
   return {};
 }
 
-/// STL files that the URDF names and that are there, by the names that it has for them.
+/// The existing STL files that the URDF names, by the names in the URDF.
 std::map<std::string, std::string> FindMeshes(const std::string& urdf, const fs::path& file,
                                               std::vector<std::string>& warnings) {
   constexpr std::size_t kMostBytes = 2000000;

@@ -9,12 +9,12 @@
 
 namespace elastocal {
 
-/// The project's robot for the 3-D view, with the STL files that its URDF names, up to 2 MB
-/// together, so that a report stays small. A mesh that is there and cannot be read is left out, and
-/// `warnings` gets a sentence about it. The view refers to `project.tree`.
+/// The project's robot for the 3-D view, with the STL files that its URDF names, of at most 2 MB
+/// together, so that a report stays small. A mesh that exists but cannot be read is left out, and
+/// `warnings` receives a sentence. The view refers to `project.tree`.
 RobotView MakeRobotView(const Project& project, std::vector<std::string>& warnings);
 
-/// The clusters of the project, and each single marker as a cluster of its own.
+/// The clusters of the project; each single marker is a cluster of its own.
 std::vector<ClusterView> MakeClusterViews(const Project& project);
 
 }  // namespace elastocal

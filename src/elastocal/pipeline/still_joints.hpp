@@ -8,8 +8,8 @@
 
 namespace elastocal {
 
-/// Joints that move markers and stood still in all postures, in a sentence; empty if there are
-/// none.
+/// A sentence that names the joints that move markers but stood still in all postures; empty if
+/// there are none.
 std::string StillJoints(const ErrorModel& model, const Recording& recording);
 
 }  // namespace elastocal

@@ -102,8 +102,8 @@ Json CoverageJson(const CalibrationRun& run) {
   return json;
 }
 
-/// The trials; the clock of the first whose drift is known, or else of the first; and the samples
-/// of all that calibrate.
+/// Adds the trials, the clock of the first trial whose drift is known (else of the first), and the
+/// samples of all trials for calibration.
 void AddTrials(const CalibrationRun& run, Json& json) {
   int samples = 0;
   json["trials"] = Json::array();
@@ -128,7 +128,7 @@ void AddTrials(const CalibrationRun& run, Json& json) {
   json["samples"] = samples;
 }
 
-/// Errors on the trials for validation.
+/// Adds errors on the trials for validation.
 void AddHeldOut(const CalibrationRun& run, Json& json) {
   if (!run.held_out) return;
   for (const ErrorTableRow& row : run.held_out->table.groups) {
@@ -143,7 +143,7 @@ void AddHeldOut(const CalibrationRun& run, Json& json) {
   }
 }
 
-/// Where the truth of a simulation is beside the recording.
+/// Adds errors of the waist, where a simulation's truth is beside the recording.
 void AddWaistErrors(const CalibrationRun& run, Json& json) {
   for (ModelKind kind : run.comparison.kinds) {
     const double error = run.waist_error[static_cast<int>(kind)];
@@ -151,7 +151,7 @@ void AddWaistErrors(const CalibrationRun& run, Json& json) {
   }
 }
 
-/// The legs, and where a foot or a cluster moved that should not.
+/// Adds the legs, and feet and clusters that moved although they should not.
 void AddStance(const CalibrationRun& run, Json& json) {
   const CalibrationResult& result = run.comparison.largest();
   const Json legs = LegsJson(run);
@@ -176,7 +176,7 @@ void AddStance(const CalibrationRun& run, Json& json) {
   }
 }
 
-/// What a user takes home, and its error on data that were not used for it.
+/// What a user deploys, and its error on data that were not used for it.
 Json DeploymentJson(const CalibrationRun& run) {
   const Deployment& deployment = run.deployment;
   const auto artefact = [&](double rmse, const std::optional<RmseInterval>& interval) {
@@ -207,7 +207,7 @@ Json ElasticityJson(const std::vector<ElasticityTrial>& tried) {
   return json;
 }
 
-/// The first link of a body, as its name.
+/// Name of the first link of a body.
 std::string LinkOfBody(const RobotTree& tree, int body) {
   const auto link = std::find_if(tree.links.begin(), tree.links.end(),
                                  [&](const Link& of) { return of.body == body; });
@@ -230,7 +230,7 @@ Json ShortModels(const CalibrationRun& run) {
   return json;
 }
 
-/// Whether the result may be used, and of what.
+/// Adds whether and for what the result may be used.
 void AddOutcome(const CalibrationRun& run, Json& json) {
   const CalibrationResult& result = run.comparison.largest();
   json["status"] = RunStatus(run);
@@ -242,7 +242,7 @@ void AddOutcome(const CalibrationRun& run, Json& json) {
   json["remarks"] = run.verdict.remarks;
 }
 
-/// What was measured, and how many parameters it can tell.
+/// Adds what was measured, and how many parameters it can tell.
 void AddProblem(const CalibrationRun& run, Json& json) {
   const CalibrationResult& result = run.comparison.largest();
   json["robot"] = result.model.tree.name;
@@ -265,7 +265,7 @@ Json PriorScaleJson(const CalibrationResult& result) {
   return json;
 }
 
-/// Of one group of postures. A waist that does not move has no noise.
+/// Noise of one group of postures. The waist has none where it does not move.
 Json NoiseJson(const Noise& noise, std::size_t group, bool waist_moves) {
   Json json;
   for (int source = 0; source < kNoiseSourceCount; ++source) {
@@ -285,7 +285,7 @@ Json NoiseJson(const Noise& noise, std::size_t group, bool waist_moves) {
   return json;
 }
 
-/// The noise, and what else weighs the measurements.
+/// Adds the noise and what else weights the observations.
 void AddStatistics(const CalibrationRun& run, Json& json) {
   const CalibrationResult& result = run.comparison.largest();
   json["marker_sd_mm"] = 1e3 * result.marker_sd;
@@ -303,7 +303,7 @@ void AddStatistics(const CalibrationRun& run, Json& json) {
   json["effective_parameters"] = result.posterior.effective_parameters;
 }
 
-/// In the fit, and by folds.
+/// Adds errors in the fit and by folds.
 void AddErrors(const CalibrationRun& run, Json& json) {
   const auto figure = [&](const ByModel<ErrorMetrics>& metrics, double ErrorMetrics::*of) {
     return FigureByModel(run.comparison.kinds, metrics, of);
@@ -326,7 +326,7 @@ void AddErrors(const CalibrationRun& run, Json& json) {
                    {"decided_once", run.decided_once}};
 }
 
-/// Springs and causes that were chosen or looked for.
+/// Adds springs and causes that were chosen or searched for.
 void AddChoices(const CalibrationRun& run, Json& json) {
   json["elasticity_tried"] = ElasticityJson(run.elasticity);
   if (!run.extra.empty()) json["extra"] = run.extra;

@@ -29,7 +29,7 @@ bool HasConverged(const Refit& refit) {
   return refit.result.termination == Termination::kConverged;
 }
 
-/// rms distance of the markers from the calibrated robot, outliers included, m.
+/// Root mean square error of the markers on the calibrated robot, outliers included, m.
 double ErrorOf(const TransferValidation& transfer) {
   return transfer.calibrated.metrics_all.rmse_3d;
 }
@@ -55,7 +55,7 @@ TransferValidation TransferTo(const Recording& recording, const RecordedModel& r
                          .uncalibrated_externals = stored.uncalibrated_externals});
 }
 
-/// Error of the calibrated robot alone.
+/// Error of the calibrated robot only.
 double ErrorOn(const Recording& recording, const RecordedModel& robot, const Project& project,
                const ValidationRun& run) {
   if (run.frozen) return ErrorOf(TransferTo(recording, robot, project, run));
@@ -64,8 +64,8 @@ double ErrorOn(const Recording& recording, const RecordedModel& robot, const Pro
       .metrics_all.rmse_3d;
 }
 
-/// From now on the markers' places that were measured are known, as they are stated: the joints are
-/// not fitted, so that what contradicts the places may be the calibration.
+/// Makes measured marker positions prior knowledge, as they are stated. The joints are not fitted,
+/// so that a contradiction may be due to the calibration.
 std::vector<MarkerMeasurement> KnowPlaces(const std::filesystem::path& file,
                                           const RecordedModel& robot, const Recording& recording,
                                           Project& project, ValidationRun& run) {
@@ -81,8 +81,8 @@ std::vector<MarkerMeasurement> KnowPlaces(const std::filesystem::path& file,
   return places;
 }
 
-/// How far the refitted markers are from their measured places; one that is further off than chance
-/// allows is named.
+/// Compares the refitted markers with their measured positions, and names those that are further
+/// off than chance allows.
 void CompareWithPlaces(const std::vector<MarkerMeasurement>& places, double probability,
                        ValidationRun& run) {
   if (places.empty()) return;
@@ -99,8 +99,8 @@ void CompareWithPlaces(const std::vector<MarkerMeasurement>& places, double prob
   }
 }
 
-/// What a URDF has a place for: without compliances and corrections, also where its geometry is
-/// that of the full model.
+/// The errors for which a URDF has a place: without compliances and corrections, also where its
+/// geometry is that of the full model.
 std::map<std::string, double> GeometryInUrdf(const StoredCalibration& stored,
                                              const ErrorModel& model) {
   std::map<std::string, double> errors = AsInUrdf(stored).joint_errors;
@@ -110,7 +110,7 @@ std::map<std::string, double> GeometryInUrdf(const StoredCalibration& stored,
   return errors;
 }
 
-/// More than one outlier in twenty observations is worth a warning.
+/// Warns where more than one in twenty observations is an outlier.
 void WarnOfOutliers(ValidationRun& run) {
   const auto outliers = run.transfer.calibrated.result.outliers.size();
   const auto seen = SeenMask(run.recording).count();
@@ -120,12 +120,13 @@ void WarnOfOutliers(ValidationRun& run) {
                          "with outliers");
 }
 
-/// What the calibrated robot errs by on other recordings, as far as its file says, m.
+/// Error of the calibrated robot expected on other recordings, by its file, m.
 double ExpectedOf(const StoredCalibration& stored) {
   return std::max(stored.rmse_3d, stored.held_out.compensated);
 }
 
-/// Faults that the joints as calibrated contradict, waist and markers being fitted.
+/// Names faults of the recording that contradict the joints as calibrated, after waist and markers
+/// are fitted.
 void NameFaults(const Project& project, std::optional<std::uint64_t> seed,
                 const Measurements& as_recorded, const RecordedModel& robot,
                 const Measurements& measured, ValidationRun& run) {
@@ -155,7 +156,7 @@ void NameFaults(const Project& project, std::optional<std::uint64_t> seed,
                                      .holds = holds});
 }
 
-/// Trials of the kind that is judged which cannot be used: no longer warnings, as these say them.
+/// Moves the warnings about judged trials that cannot be used to `not_judged`.
 void NameUnused(const std::vector<TrialSummary>& trials, ValidationRun& run) {
   const bool by_calibration = std::ranges::any_of(run.recording.trials, [](const Trial& trial) {
     return trial.kind == TrialKind::kCalibration;
@@ -171,7 +172,8 @@ void NameUnused(const std::vector<TrialSummary>& trials, ValidationRun& run) {
   }
 }
 
-/// Warns where the calibration was made from this recording, or predicted less than it shows.
+/// Warns where the calibration was made from this recording, or predicted a smaller error than it
+/// shows.
 void CompareWithPrediction(const Project& project, const std::filesystem::path& recording,
                            ValidationRun& run) {
   const HeldOutErrors& held_out = run.calibration.held_out;

@@ -15,60 +15,65 @@
 
 namespace elastocal {
 
-/// A calibration on a recording that it was not made from.
+/// Result of ValidateCalibration: a calibration on a recording from which it was not made.
 struct ValidationRun {
   StoredCalibration calibration;
-  std::string calibration_file;  ///< its calibration.yaml
+  std::string calibration_file;  ///< path of its calibration.yaml
   Recording recording;
   TransferValidation transfer;
-  std::optional<Refit> urdf;    ///< the robot as the calibrated URDF has it; nothing if frozen
-  double expected_error = 0.0;  ///< of a robot that was never calibrated (ExpectedError), m
-  bool frozen = false;          ///< whether nothing was fitted
-  /// Of the recording, or contradictions to the calibration: its figures judge nothing.
+  std::optional<Refit> urdf;  ///< fit with the geometry of the calibrated URDF; empty if frozen
+  /// Expected error of a robot that was never calibrated (ExpectedError), m.
+  double expected_error = 0.0;
+  bool frozen = false;  ///< nothing was fitted
+  /// Mistakes of the recording, or contradictions to the calibration; with any of them the errors
+  /// judge nothing.
   std::vector<std::string> mistakes;
   std::vector<std::string> not_judged;  ///< trials that cannot be used, a sentence each
-  std::vector<std::string> warnings;    ///< what a user should know of, a sentence each
-  /// Errors that the calibration expects, and what the recording shows, m: by the calibrated URDF,
-  /// or by the calibrated model if frozen. Expected 0: the calibration left nothing out.
+  std::vector<std::string> warnings;    ///< what the user should know, a sentence each
+  /// Error that the calibration expects on other recordings, and the error on this one, m: by the
+  /// calibrated URDF, or by the calibrated model if frozen. `predicted` is 0 where the calibration
+  /// held out no data.
   double predicted = 0.0, shown = 0.0;
-  std::vector<PlaceResidual> places = {};  ///< of markers that were measured on their links
-  bool own_recording = false;              ///< whether the calibration was made from the recording
+  /// Residuals of marker positions that were measured on their links.
+  std::vector<PlaceResidual> places = {};
+  bool own_recording = false;  ///< the calibration was made from this recording
 
   bool converged() const;
-  /// Whether the calibrated robot explains the recording better than the uncalibrated one, outliers
-  /// included.
+  /// Whether the calibrated robot has a smaller error than the uncalibrated one, outliers included.
   bool better() const;
-  /// Whether the calibrated robot errs by less than twice what one that was never calibrated is
-  /// expected to: otherwise recording, project and calibration do not belong together.
+  /// Whether the error of the calibrated robot is less than twice that expected of a robot that was
+  /// never calibrated. Otherwise recording, project and calibration do not belong together.
   bool plausible() const;
-  /// Whether the calibrated robot errs by no more than kWorseThanPredicted times what its
-  /// calibration predicted; true where that predicted nothing.
+  /// Whether the error of the calibrated robot is at most kWorseThanPredicted times the predicted
+  /// one; true where none was predicted.
   bool as_predicted() const;
 };
 
-/// Other days and other parts of the workspace bring somewhat more than held-out postures show.
+/// Allowed ratio of the shown to the predicted error. Other days and other parts of the workspace
+/// give somewhat larger errors than held-out postures.
 inline constexpr double kWorseThanPredicted = 1.5;
 
+/// Settings of ValidateCalibration.
 struct TransferOptions {
-  /// Fit nothing: waist and markers are those of the calibration (see ValidateFrozen).
+  /// Fits nothing: waist and markers are those of the calibration (see ValidateFrozen).
   bool frozen = false;
-  std::optional<std::uint64_t> seed = {};  ///< instead of the project's
-  /// Mistakes of the recording to be corrected first, see AcceptMistakes.
+  std::optional<std::uint64_t> seed = {};  ///< default: the project's
+  /// Mistakes of the recording that are corrected first, see AcceptMistakes.
   std::vector<std::string> accept = {};
-  /// Where markers are on their links, as measured (ReadMarkerPlaces); empty: nobody knows. Both
-  /// robots are fitted beside them, as they are stated.
+  /// File of marker positions measured on their links (ReadMarkerPlaces); empty: none. Both robots
+  /// are fitted with these positions as prior knowledge, with their stated standard deviations.
   std::filesystem::path marker_places = {};
 };
 
-/// Applies a stored calibration to another recording of the same robot: only waist and markers are
-/// fitted anew, for the calibrated and for the nominal robot (paper, section 6.1.4), or nothing.
-/// Mistakes in a recording that explain its misfit are named (FindMistakesBy), and faults by which
-/// it contradicts the calibration (FindTransferFaults).
+/// Applies a stored calibration to another recording of the same robot. Only waist and markers are
+/// fitted, for the calibrated and for the nominal robot (paper, section 6.1.4), or nothing.
+/// Mistakes of a recording that explain its misfit are named (FindMistakesBy), and so are faults by
+/// which it contradicts the calibration (FindTransferFaults).
 ///
-/// `calibration`: the folder that calibrate wrote to, or its calibration.yaml. `recording`: a
-/// posture table or a recording folder; trials for validation will do. Throws InputError: files
-/// that cannot be read; a calibration of a robot with other nominal geometry than the project's;
-/// places of markers where nothing is fitted.
+/// `calibration` is the folder that calibrate wrote to, or its calibration.yaml. `recording` is a
+/// posture table or a recording folder; its trials for validation are used as well. Throws
+/// InputError for files that cannot be read, for a calibration of a robot with other nominal
+/// geometry than the project's, and for positions of markers where nothing is fitted.
 ValidationRun ValidateCalibration(const Project& given, const std::filesystem::path& calibration,
                                   const std::filesystem::path& recording,
                                   const TransferOptions& options = {});

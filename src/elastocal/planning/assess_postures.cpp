@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The set-up of a chain of either side.
+/// The set-up of a chain or of its mirror image.
 ChainSetup SetupOf(const Project& project, const std::string& chain) {
   for (const ChainSetup& setup : SetupsOfBothSides(project)) {
     if (setup.name == chain) return setup;
@@ -24,8 +24,8 @@ ChainSetup SetupOf(const Project& project, const std::string& chain) {
                    "'");
 }
 
-/// Whether a posture of a recording exercises the chain: in a trial with a chain that ends where
-/// this one does, or in a table of postures.
+/// Whether a posture of a recording exercises the chain: it is of a trial with a chain that has the
+/// same end, or of a posture table.
 bool Exercises(const Recording& recording, Eigen::Index posture, const Project& project,
                const ChainSetup& setup) {
   if (recording.trials.empty()) return true;
@@ -100,7 +100,7 @@ std::vector<ChainAssessment> AssessPostures(const Project& project,
                                             const std::vector<ChainPostures>& sets,
                                             const PostureAssessmentOptions& options,
                                             const Progress& progress) {
-  ChosenSetups(project, {});  // says so where there is no section `design`
+  ChosenSetups(project, {});  // throws where there is no section `design`
   for (const std::string& name : options.chains) FindChain(project, name);
   std::vector<const ChainPostures*> chosen;
   for (const ChainPostures& set : sets) {

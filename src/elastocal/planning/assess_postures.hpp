@@ -12,42 +12,46 @@
 
 namespace elastocal {
 
+/// Settings of AssessPostures.
 struct PostureAssessmentOptions {
-  std::vector<std::string> chains = {};  ///< only these; empty: all that the postures are of
-  /// The compliances of the joints (eq. 5), and of the one leg that stands (eq. 6), shall be
-  /// determined as well.
+  /// Names of the chains to assess; empty: all for which there are postures.
+  std::vector<std::string> chains = {};
+  /// Also assess the compliances of the joints (eq. 5), and of the leg if a single one stands (eq.
+  /// 6).
   bool elastic = false;
-  AssessOptions assess = {};  ///< of each chain
+  AssessOptions assess = {};  ///< settings for each chain
 };
 
-/// What the postures of one chain are worth.
+/// Assessment of the postures of one chain.
 struct ChainAssessment {
   ChainSetup setup;
-  std::vector<Parameter> parameters;  ///< identifiable, one an entry of assessment.parameter_sd
+  /// Identifiable parameters, in the order of assessment.parameter_sd.
+  std::vector<Parameter> parameters;
   int posture_count = 0;
   Assessment assessment;
 
   /// Entries of `parameters` with the largest standard deviations, the largest first; at most
-  /// `count`, and none of the waist's and the markers' parameters.
+  /// `count`, without those of waist and markers.
   std::vector<int> WeakestParameters(int count) const;
 };
 
-/// Assesses sets of postures, whoever chose them (paper, section 7): how much they tell, how far
-/// that is from the most that is possible, which posture adds least and which one would add most.
-/// Progress counts chains.
+/// Assesses given sets of postures (paper, section 7): their information, its ratio to the largest
+/// possible one, the posture that adds least, and the one that would add most. Progress counts
+/// chains.
 ///
-/// Throws InputError for a chain that the project's section `design` does not have, where there is
-/// no such section, and where no set is of one of the chains asked for.
+/// Throws InputError for a chain that the project's section `design` does not have, for a project
+/// without that section, and where none of the requested chains has a set.
 std::vector<ChainAssessment> AssessPostures(const Project& project,
                                             const std::vector<ChainPostures>& sets,
                                             const PostureAssessmentOptions& options,
                                             const Progress& progress = {});
 
-/// The postures of a recording as sets: for each chain of the project's section `design` and its
-/// mirror image, those of the trials that exercise it; of a posture table all.
+/// The postures of a recording as sets. For each chain of the project's section `design` and its
+/// mirror image these are the postures of the trials that exercise it; in a posture table all
+/// postures.
 std::vector<ChainPostures> RecordedPostures(const Project& project, const Recording& recording);
 
-/// The assessments for programs (JSON), with the `weakest` weakest parameters of each.
+/// The assessments as JSON, with the `weakest` weakest parameters of each.
 std::string FormatAssessment(const std::vector<ChainAssessment>& chains, int weakest);
 
 }  // namespace elastocal

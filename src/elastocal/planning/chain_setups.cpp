@@ -8,9 +8,9 @@
 namespace elastocal {
 namespace {
 
-/// What can give way while the chain moves: its joints, and the leg that the robot stands on, if
-/// it is one. (How two legs share the load, statics does not say; where the root is free, how it
-/// gives way does not show.)
+/// Elasticity that shows while the chain moves: that of its joints and of the leg on which the
+/// robot stands, if it is one. (Statics does not tell how two legs share the load; a free root does
+/// not show its own deflection.)
 Elasticity ChainElasticity(const Project& project, const ChainSetup& setup) {
   const RobotTree& tree = project.tree;
   Elasticity elasticity;
@@ -30,14 +30,14 @@ Elasticity ChainElasticity(const Project& project, const ChainSetup& setup) {
 }
 
 /// The markers of a chain. `towards_root`: also those on all bodies that carry it. With a free root
-/// else those that it is seen from: on the body that it begins at or, if that has none, on the
-/// nearest body towards the root.
+/// otherwise also the reference markers: those on the body at which the chain begins or, if it has
+/// none, on the nearest body towards the root.
 std::vector<std::string> SeenMarkers(const Project& project, const Chain& chain,
                                      bool towards_root) {
   std::vector<std::string> names = ChainMarkers(project, chain);
   if (names.empty() || !(project.motion.free_root || towards_root)) return names;
   const RobotTree& tree = project.tree;
-  std::vector<int> bodies = {0};  // from the root out
+  std::vector<int> bodies = {0};  // from the root outwards
   for (int joint : JointsToBody(tree, tree.links[chain.from_link].body)) {
     bodies.push_back(joint + 1);
   }

@@ -10,18 +10,18 @@
 
 namespace elastocal {
 
-/// A chain for which postures are sought, with its error model (of the markers that are seen) and
-/// the parameters of it that can be identified. Problems refer to the model, so the model has an
-/// address that stays.
+/// A chain for which postures are sought, with its error model (for the markers that are seen) and
+/// identifiable parameters. Problems keep references to the model, which therefore has a fixed
+/// address.
 struct DesignedChain {
   ChainSetup setup;
   std::unique_ptr<ErrorModel> model;
   BaseParameters base;
 };
 
-/// `elastic`: the joints' compliances (torsion and bending) are to be identified as well.
-/// `towards_root`: the markers on all bodies that carry the chain are seen besides.
-/// Throws InputError where the chain carries no markers.
+/// Prepares a chain. With `elastic`, the joints' compliances (torsion and bending) are parameters,
+/// too. With `towards_root`, the markers on all bodies that carry the chain are also seen. Throws
+/// InputError where the chain carries no markers.
 DesignedChain PrepareChain(const Project& project, const ChainSetup& setup, bool elastic,
                            bool towards_root = false);
 
@@ -29,10 +29,10 @@ DesignedChain PrepareChain(const Project& project, const ChainSetup& setup, bool
 /// InputError for an unknown name, and where the project has no section `design`.
 std::vector<ChainSetup> ChosenSetups(const Project& project, const std::vector<std::string>& names);
 
-/// Set-up of the chain on the other side. Throws InputError where there is no mirror image.
+/// Set-up of the mirror image of a chain. Throws InputError where it has none.
 ChainSetup OtherSide(const Project& project, const ChainSetup& setup);
 
-/// The project's chain set-ups, each followed by that of the other side where it has one.
+/// The project's chain set-ups, each followed by its mirror image if it has one.
 std::vector<ChainSetup> SetupsOfBothSides(const Project& project);
 
 }  // namespace elastocal

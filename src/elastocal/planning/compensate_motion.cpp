@@ -99,7 +99,7 @@ void CheckLimits(const Project& project, CompensatedMotion& result) {
   }
 }
 
-/// By coordinate: what no command exceeds, with room for the rounding of its file.
+/// By coordinate: largest speed of a command, with room for the rounding in its file.
 Eigen::VectorXd Speeds(const RobotTree& tree) {
   constexpr double kShare = 1.0 - 1e-6;
   Eigen::VectorXd speeds(static_cast<Eigen::Index>(tree.coordinate_joint.size()));
@@ -126,7 +126,7 @@ void LookAtLimbs(const Compensator& compensator, double time_s, std::vector<Left
   }
 }
 
-/// `reasons`: the limits that leave it.
+/// Judges the deviations. `reasons` names the limits that cause them.
 void JudgeLeft(std::vector<std::string> reasons, double most_left_m, CompensatedMotion& result) {
   const LeftAtLimb* worst = nullptr;
   for (const LeftAtLimb& one : result.left) {
@@ -142,7 +142,7 @@ void JudgeLeft(std::vector<std::string> reasons, double most_left_m, Compensated
                   1e3 * worst->most.value, worst->limb, worst->most.time_s, 1e3 * most_left_m));
 }
 
-/// Distances of the calibrated robot's parts.
+/// Computes distances of the calibrated robot's parts.
 class CalibratedClearance {
  public:
   explicit CalibratedClearance(const Project& project)
@@ -165,8 +165,8 @@ class CalibratedClearance {
   std::vector<std::string> names_;
 };
 
-/// The zero-moment point of the plan, and of the calibrated robot, with masses as described. Its
-/// root link is where the plan has it, since hands and feet are.
+/// Computes the zero-moment point of the plan and of the calibrated robot, with masses as
+/// described. The root link follows the plan, because hands and feet do.
 class CalibratedBalance {
  public:
   CalibratedBalance(const StandingRobot& robot, const SampledMotion& motion, MotionForces planned)
@@ -177,7 +177,7 @@ class CalibratedBalance {
         follow_(robot.tree, step_),
         zmp_(planned_.zmp) {}
 
-  /// The next sample.
+  /// Examines the next sample.
   void Look(std::vector<Transform> T_root_link) {
     const Transform& T_world_root = planned_.T_world_root[Size(taken_)];
     for (Transform& T : T_root_link) T = T_world_root * T;
@@ -186,14 +186,14 @@ class CalibratedBalance {
     ++taken_;
   }
 
-  /// After the last sample.
+  /// Stores the result after the last sample.
   void Store(CompensatedMotion& result) {
     zmp_.row(taken_ - 1) = follow_.Last().transpose();
     result.has_zmp = true;
     result.planned_zmp = Least(planned_.zmp, result.planned.motion);
     result.zmp = Least(zmp_, result.planned.motion);
     if (result.zmp.value >= std::min(robot_.limits.zmp_margin, result.planned_zmp.value)) return;
-    // A plan that leaves the support by itself is its planner's: masses may be described badly.
+    // If the plan itself leaves the support, that is due to its planner, or to wrong masses.
     const bool leaves = result.zmp.value < 0.0 && result.planned_zmp.value >= 0.0;
     (leaves ? result.broken : result.warnings)
         .push_back(fmt::format("the zero-moment point is {:.1f} mm {} the edge of the support at "
@@ -220,7 +220,7 @@ class CalibratedBalance {
   Eigen::MatrixX2d zmp_;
 };
 
-/// Torques by joint from those by coordinate of the plan.
+/// Torques by joint from those by coordinate in the plan.
 Eigen::VectorXd JointTorques(const RobotTree& tree, const Eigen::VectorXd& by_coordinate) {
   Eigen::VectorXd torques = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(tree.joints.size()),
                                                       std::numeric_limits<double>::quiet_NaN());
@@ -283,8 +283,7 @@ void CheckCanBeCorrected(const Project& project, const RuntimeModel& model) {
   }
 }
 
-/// The robot that the plan was made for, and how it keeps its balance; empty where that is not
-/// known.
+/// The robot for which the plan was made, standing, with its motion; empty where that is unknown.
 struct PlannedBalance {
   std::unique_ptr<StandingRobot> robot;
   std::optional<CalibratedBalance> balance;

@@ -35,7 +35,7 @@ std::string Escaped(const std::string& text) {
   return escaped;
 }
 
-/// A round step that divides a range into about five.
+/// A round step that divides a range into about five parts.
 double RoundStep(double range) {
   const double raw = range / 5.0;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
@@ -48,7 +48,7 @@ double RoundStep(double range) {
 struct Axis {
   double lower = std::numeric_limits<double>::infinity();
   double upper = -std::numeric_limits<double>::infinity();
-  double from = 0.0, to = 1.0;  // on the picture
+  double from = 0.0, to = 1.0;  // range in the picture
 
   void Include(const std::vector<double>& values) {
     for (double value : values) {

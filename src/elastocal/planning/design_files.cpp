@@ -14,12 +14,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// "O1" to "O5".
+/// Name of a criterion: "O1" to "O5".
 std::string CriterionName(Criterion criterion) {
   return "O" + std::to_string(static_cast<int>(criterion) + 1);
 }
 
-/// "postures.yaml" -> "postures_summary.json".
+/// Name of a file beside another: "postures.yaml" -> "postures_summary.json".
 std::filesystem::path Beside(const std::filesystem::path& output, const std::string& ending) {
   return output.parent_path() / (output.stem().string() + ending);
 }

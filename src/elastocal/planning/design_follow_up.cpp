@@ -17,13 +17,14 @@
 namespace elastocal {
 namespace {
 
-/// A calibration for the design of any chain.
+/// A calibration, for the design of any chain.
 struct Known {
   StoredCalibration stored;
   CalibrationEstimate estimate;
 };
 
-/// All that the chain's postures may tell, identifiable or not: what is known settles the rest.
+/// All parameters that the chain's postures can tell, identifiable or not; prior knowledge
+/// determines the rest.
 std::vector<int> Columns(const DesignedChain& chain) {
   std::vector<int> columns;
   for (int i = 0; i < chain.model->parameter_count(); ++i) {
@@ -110,7 +111,7 @@ FollowUpChain DesignOne(const Project& project, const ChainSetup& setup, const K
 }
 
 std::vector<ChainSetup> Chosen(const Project& project, const FollowUpOptions& options) {
-  ChosenSetups(project, {});  // refuses a project without them
+  ChosenSetups(project, {});  // throws for a project without chain set-ups
   std::vector<ChainSetup> setups = SetupsOfBothSides(project);
   std::vector<std::string> names, joints;
   for (const ChainSetup& setup : setups) names.push_back(setup.name);

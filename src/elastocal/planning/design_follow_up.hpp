@@ -15,50 +15,54 @@
 
 namespace elastocal {
 
+/// Settings of DesignFollowUp.
 struct FollowUpOptions {
   SequentialAim aim = SequentialAim::kParameters;
-  int postures = 8;         ///< of each chain
-  double days = 1.0;        ///< since the calibration
-  double marker_sd = 3e-4;  ///< of a coordinate, m
-  /// Of the project's section `design`, mirror images included; empty: all, or those that move
-  /// `joints`.
+  int postures = 8;         ///< number of postures of each chain
+  double days = 1.0;        ///< time since the calibration
+  double marker_sd = 3e-4;  ///< noise of a marker coordinate, m
+  /// Chains of the project's section `design` or their mirror images; empty: all, or those that
+  /// move `joints`.
   std::vector<std::string> chains = {};
-  /// Whose changes shall be told, with SequentialAim::kChanges; empty: all.
+  /// Joints whose changes the postures must tell, for SequentialAim::kChanges; empty: all.
   std::vector<std::string> joints = {};
   std::uint64_t seed = 1;
 };
 
-/// How well the postures tell a change of a joint's zero.
+/// How exactly postures tell a change of a joint's zero.
 struct ZeroSensitivity {
   std::string joint;
   bool prismatic = false;
-  double sd = 0.0;  ///< rad or m; infinite: they cannot tell one of the size that is expected
-  double smallest_seen = 0.0;  ///< by check (SmallestChange), rad or m; infinite likewise
+  double sd = 0.0;  ///< rad or m; infinite: a change of the expected size cannot be told
+  /// Smallest change that check would find (SmallestChange), rad or m; infinite likewise.
+  double smallest_seen = 0.0;
 };
 
-/// `zeros` of the figures for programs (docs/formats.md).
+/// `zeros` of the JSON output (docs/formats.md).
 nlohmann::ordered_json ZerosJson(const std::vector<ZeroSensitivity>& zeros);
 
+/// Postures chosen for one chain.
 struct FollowUpChain {
   ChainPostures postures;
   double information = 0.0;  ///< expected, nats: see ExpectedInformation
   std::vector<ZeroSensitivity> zeros;
 };
 
+/// Result of DesignFollowUp.
 struct FollowUpDesign {
   std::vector<FollowUpChain> chains;
-  std::string infeasible;  ///< why a chain has no posture; empty where all have
+  std::string infeasible;  ///< reason why a chain has no posture; empty where all have
 
   std::vector<ChainPostures> postures() const;
 };
 
-/// Chooses postures for a robot that has been calibrated: those that add most to what is known, or
-/// that tell whether a joint has moved since (see SequentialDesign). Each chain by itself: what is
-/// known of the two sides differs.
+/// Chooses postures for a calibrated robot: those that add most to what is known, or that tell
+/// whether a joint has moved since (see SequentialDesign). Each chain is treated by itself, because
+/// what is known differs between the two sides.
 ///
-/// `calibration`: the folder that calibrate wrote to, or its calibration.yaml, with its covariance.
-/// Throws InputError: files that cannot be read; a calibration of another robot; an unknown chain
-/// or joint.
+/// `calibration` is the folder that calibrate wrote to, or its calibration.yaml, with its
+/// covariance. Throws InputError for files that cannot be read, for a calibration of another robot,
+/// and for an unknown chain or joint.
 FollowUpDesign DesignFollowUp(const Project& project, const std::filesystem::path& calibration,
                               const FollowUpOptions& options, const Progress& progress = {});
 

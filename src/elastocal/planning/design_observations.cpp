@@ -22,7 +22,7 @@ namespace {
 
 /// A posture that may be chosen.
 struct Candidate {
-  int plate = -1;  ///< that touches; -1: instruments look
+  int plate = -1;  ///< index of the plate that touches; -1: instruments look
   Eigen::VectorXd q;
 };
 
@@ -37,7 +37,7 @@ std::vector<Candidate> ListCandidates(const ObservationDesign& drawn, int plates
   return candidates;
 }
 
-/// What the nominal robot shows in the candidates.
+/// Observations of the nominal robot in the candidates.
 Observations NominalObservations(const Project& project, const ObservationSetup& setup,
                                  const ObservedRobot& model,
                                  const std::vector<Candidate>& candidates) {
@@ -57,7 +57,7 @@ Observations NominalObservations(const Project& project, const ObservationSetup&
   }
   ObservedValues nominal;
   nominal.robot = Eigen::VectorXd::Zero(model.robot.parameter_count());
-  for (const Quantity& quantity : model.setup.quantities) {  // of a held root, its tilt as well
+  for (const Quantity& quantity : model.setup.quantities) {  // with the tilt of a held root
     nominal.quantities.push_back({quantity.origin, Eigen::VectorXd::Zero(quantity.size())});
   }
   const std::vector<Sight> sights = SightsOf(model, all, nominal, {});
@@ -72,7 +72,7 @@ Observations NominalObservations(const Project& project, const ObservationSetup&
   return all;
 }
 
-/// The robot as the project describes it, and what it shows nominally.
+/// The robot of the project, with its nominal observations.
 ObservedRobot RobotOfProject(const Project& project, const ObservationSetup& setup,
                              const std::vector<Candidate>& candidates, Observations& observations) {
   const auto joints = [&](const std::optional<std::vector<std::string>>& patterns) {
@@ -86,7 +86,7 @@ ObservedRobot RobotOfProject(const Project& project, const ObservationSetup& set
   return model;
 }
 
-/// By how much the joints' parameters may have changed; 0 for those of other joints.
+/// Standard deviations of changes of the joints' parameters; 0 for other joints.
 Eigen::VectorXd SizesOf(const std::vector<std::string>& joints, const EarlierEstimate& earlier,
                         const ObservedRobot& model, const Project& project) {
   Eigen::VectorXd sizes = SizeOfChanges(earlier, model.robot, project.calibration.prior);
@@ -106,7 +106,7 @@ Eigen::VectorXd SizesOf(const std::vector<std::string>& joints, const EarlierEst
   return sizes;
 }
 
-/// The robot of an earlier calibration, and what it shows nominally.
+/// The robot of an earlier calibration, with its nominal observations.
 ObservedRobot RobotAfterEarlier(const Project& project, const ObservationSetup& setup,
                                 const std::vector<Candidate>& candidates,
                                 const ObservationDesignOptions& options,
@@ -119,7 +119,7 @@ ObservedRobot RobotAfterEarlier(const Project& project, const ObservationSetup& 
   return model;
 }
 
-/// What candidates show, as residuals of the nominal robot.
+/// Observations in the candidates, as residuals of the nominal robot.
 class CandidateResiduals {
  public:
   CandidateResiduals(const ObservedRobot& model, const Observations& observations, int candidates)
@@ -140,7 +140,7 @@ class CandidateResiduals {
   int candidates_;
 };
 
-/// How well postures tell changes of zeros since an earlier calibration.
+/// How exactly postures tell changes of zeros since an earlier calibration.
 std::vector<ZeroSensitivity> ZerosTold(const ObservedRobot& model,
                                        const CandidateResiduals& candidates,
                                        const std::vector<int>& chosen,

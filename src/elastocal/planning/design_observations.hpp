@@ -13,46 +13,49 @@
 
 namespace elastocal {
 
+/// Settings of DesignObservations.
 struct ObservationDesignOptions {
-  int count = 30;      ///< postures in all
-  int candidates = 8;  ///< random feasible postures from which each is chosen
+  int count = 30;      ///< number of postures altogether
+  int candidates = 8;  ///< number of random feasible postures for each posture to be chosen
   std::uint64_t seed = 1;
-  /// A calibration of the robot (folder of calibrate, or its calibration.yaml): what it tells is
-  /// known, as it is `days` later. Empty: none.
+  /// A calibration of the robot (folder of calibrate, or its calibration.yaml), `days` old, whose
+  /// estimates are prior knowledge. Empty: none.
   std::filesystem::path after = {};
   double days = 1.0;
-  /// Whether joints may have moved since then: their changes are what postures shall tell.
+  /// Joints may have moved since then, and the postures must tell their changes.
   bool changes = false;
-  std::vector<std::string> joints = {};  ///< which ones; empty: any
+  std::vector<std::string> joints = {};  ///< the joints that may have moved; empty: any
 };
 
-/// Postures in which a robot shall touch tables and be seen by instruments.
+/// Postures in which a robot touches tables and is seen by instruments.
 struct ObservationDesign {
   std::vector<ChainPostures> postures;  ///< by plate, then those of kLooks
   int candidates = 0;
-  /// What the postures tell beside the prior of the project, in nats: half the logarithm of the
-  /// determinant of information over that of the prior; mean of as many candidates at random.
+  /// Information of the postures beside the prior of the project, nats: half the logarithm of the
+  /// ratio of determinants (information with the postures over that of the prior); and its mean for
+  /// as many random candidates.
   double information = 0.0, information_at_random = 0.0;
-  std::vector<ZeroSensitivity> zeros = {};  ///< after a calibration, of the joints that it knows
-  std::string infeasible = {};              ///< why there are no postures; empty where there are
+  std::vector<ZeroSensitivity> zeros = {};  ///< after a calibration: for the joints that it knows
+  std::string infeasible = {};  ///< reason why there are no postures; empty where there are
 };
 
-/// Random feasible postures (ObservedPostureSampler): `count` of each plate that touches, and of
-/// looks where there are instruments beside plates. With `infeasible` set, they are not complete.
+/// Random feasible postures (ObservedPostureSampler): `count` for each plate that touches, and
+/// `count` looks if there are instruments beside plates. Incomplete if `infeasible` is set.
 ObservationDesign DrawObservedPostures(const Project& project, int count, std::uint64_t seed,
                                        const Progress& progress = {});
 
-/// Chooses, among random feasible postures, those that tell most of all that is estimated (Bayesian
-/// D-optimality: largest determinant of the information, prior included): one after the other, and
-/// then each anew while the others stay. What a posture shows is that of the nominal robot, with
-/// the noise that the sources of the set-up have at first, or that an earlier calibration found.
-/// The same seed gives the same postures. Throws what ObservedPostureSampler and
-/// MakeRobotAfterEarlier throw, and InputError for joints that the calibration does not know.
+/// Chooses those of random feasible postures that tell most about all estimated parameters
+/// (Bayesian D-optimality: largest determinant of the information, prior included). They are chosen
+/// one after the other; then each is exchanged once while the others stay. Observations are those
+/// of the nominal robot, with the initial noise of the set-up's sources, or the noise that an
+/// earlier calibration found. The same seed gives the same postures. Throws as
+/// ObservedPostureSampler and MakeRobotAfterEarlier, and InputError for joints that the calibration
+/// does not know.
 ObservationDesign DesignObservations(const Project& project,
                                      const ObservationDesignOptions& options,
                                      const Progress& progress = {});
 
-/// posture_summary.json of such a design.
+/// posture_summary.json for such a design.
 std::string FormatObservationDesign(const ObservationDesign& design);
 
 }  // namespace elastocal

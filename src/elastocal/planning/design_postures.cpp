@@ -11,7 +11,7 @@
 namespace elastocal {
 namespace {
 
-/// Seconds since it was made.
+/// Measures the seconds since its construction.
 class Stopwatch {
  public:
   double Seconds() const {
@@ -22,7 +22,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// The postures of the chain on the other side.
+/// The mirrored postures for the chain on the other side.
 DesignedPostures DesignOtherSide(const Project& project, const ChainDesign& design,
                                  const PostureDesignOptions& options) {
   const Stopwatch watch;
@@ -44,7 +44,7 @@ DesignedPostures DesignOtherSide(const Project& project, const ChainDesign& desi
   return opposite;
 }
 
-/// One side of a chain, with the curves of its index.
+/// Designs one side of a chain, with the curves of its index.
 void DesignOneSide(const Project& project, const ChainSetup& setup,
                    const PostureDesignOptions& options, PostureDesign& result) {
   const Stopwatch watch;
@@ -63,7 +63,7 @@ void DesignOneSide(const Project& project, const ChainSetup& setup,
   }
 }
 
-/// Why a chain has no postures that determine its parameters; empty where it has.
+/// Reason why a chain has no postures that determine its parameters; empty where it has.
 std::string WhyInfeasible(const ChainDesign& design) {
   if (design.index > 0.0) return "";
   const std::string chain = "chain '" + design.setup.name + "': ";

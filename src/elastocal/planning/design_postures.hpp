@@ -13,18 +13,21 @@
 
 namespace elastocal {
 
+/// Settings of DesignPostures.
 struct PostureDesignOptions {
-  /// Of the project's section `design`; empty: all. A chain with a mirror image brings that along.
+  /// Chains of the project's section `design`; empty: all. A chain's mirror image is always
+  /// included.
   std::vector<std::string> chains = {};
-  /// The compliances of the joints (eq. 5), and of the one leg that stands (eq. 6), shall be
-  /// determined as well.
+  /// Also determine the compliances of the joints (eq. 5), and of the leg if a single one stands
+  /// (eq. 6).
   bool elastic = false;
-  /// Also finds what the other algorithms reach with as many postures; takes several times as long.
+  /// Also finds the indices that the other algorithms reach with as many postures; takes several
+  /// times as long.
   bool compare_algorithms = false;
-  DesignOptions design = {};  ///< of each chain
+  DesignOptions design = {};  ///< settings for each chain
 };
 
-/// The postures of one chain, and how long they took to find.
+/// The postures of one chain, and the time to find them.
 struct DesignedPostures {
   ChainDesign design;
   double seconds = 0.0;
@@ -32,7 +35,7 @@ struct DesignedPostures {
 
 /// Calibration postures of a robot.
 struct PostureDesign {
-  std::vector<DesignedPostures> chains;  ///< each followed by its mirror image, where it has one
+  std::vector<DesignedPostures> chains;  ///< each followed by its mirror image, if it has one
   std::vector<CurvePoint> curves;        ///< index against number of postures
   /// Why there are no postures that determine the parameters of the last chain; empty where there
   /// are for all. Then the design has ended early and is of no use.
@@ -53,26 +56,26 @@ struct PostureDesign {
 PostureDesign DesignPostures(const Project& project, const PostureDesignOptions& options,
                              const Progress& progress = {});
 
-/// What `design` writes: the posture file, and beside it, if the file is `postures.yaml`,
-/// postures_summary.json, postures_curves.csv and postures_curves.svg (docs/formats.md, Postures).
+/// Files written by `design`: the posture file and, for `postures.yaml`, postures_summary.json,
+/// postures_curves.csv and postures_curves.svg beside it (docs/formats.md, Postures).
 struct DesignFiles {
   explicit DesignFiles(const std::filesystem::path& output);
 
   std::filesystem::path postures, summary, curves, picture;
 
-  /// To the set, with how files of these kinds begin.
+  /// Declares the files in the set, with the beginnings by which such files are recognised.
   void Declare(OutputSet& outputs) const;
 };
 
-/// Puts the contents of these files, which have been declared, into the set.
+/// Sets the contents of these files, which must be declared.
 void SetDesignFiles(const DesignFiles& files, const Project& project, const PostureDesign& design,
                     const PostureDesignOptions& options, OutputSet& outputs);
 
-/// postures_summary.json.
+/// Contents of postures_summary.json.
 std::string FormatDesignSummary(const Project& project, const PostureDesign& design,
                                 const PostureDesignOptions& options);
 
-/// How the search for the postures of a chain ended, in a word or two.
+/// Result of the search for a chain's postures, in a word or two.
 const char* StatusText(DesignResult::Status status);
 
 }  // namespace elastocal

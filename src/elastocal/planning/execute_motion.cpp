@@ -23,19 +23,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kBeforeLanding = 0.05;  // s
-constexpr int kEvery = 10;               // looks of 10 ms between two comparisons
+constexpr int kEvery = 10;               // looks (of 10 ms) between two comparisons
 constexpr double kLook = 0.01;           // s
-constexpr int kPictureEvery = 20;        // looks between two pictures, or more
+constexpr int kPictureEvery = 20;        // looks between two pictures, at least
 constexpr int kMostPictures = 2000;
 
-/// Looks from one picture to the next: a multiple of `kEvery`, more for a long motion.
+/// Looks between two pictures: a multiple of `kEvery`, larger for a long motion.
 int LooksAPicture(const JointMotion& plan) {
   const double duration = plan.time_s[plan.time_s.size() - 1] - plan.time_s[0];
   const double fewest = duration / kLook / kMostPictures;
   return std::max(kPictureEvery, kEvery * static_cast<int>(std::ceil(fewest / kEvery)));
 }
 
-/// Compares where a robot is with where the plan has it.
+/// Compares the robot's poses with those of the plan.
 class PlanWatch {
  public:
   PlanWatch(const Project& project, const TrueRobot& robot, const JointMotion& plan, RootWatch root)
@@ -105,7 +105,7 @@ class PlanWatch {
   }
 
  private:
-  /// The sample shortly before each time that the plan sets a foot down.
+  /// Marks the sample shortly before each time at which the plan sets a foot down.
   void MarkLandings() {
     const std::size_t count = plan_.support.size();
     landing_.assign(count, -1);
@@ -169,7 +169,7 @@ class PlanWatch {
   PlaceErrorSum hands_, feet_, landing_sum_, waist_, com_;
 };
 
-/// With all feet on the floor where the motion does not say which.
+/// The motion with all feet on the floor, where it does not state the support.
 JointMotion OnItsFeet(const Project& project, JointMotion motion) {
   if (project.soles.empty()) {
     throw InputError(
@@ -194,7 +194,7 @@ void CheckPlan(const JointMotion& planned) {
   }
 }
 
-/// The samples of the plan until a time.
+/// The samples of the plan up to a time.
 JointMotion Until(double time_s, JointMotion planned) {
   const auto after = std::upper_bound(planned.time_s.begin(), planned.time_s.end(), time_s);
   const Eigen::Index count = after - planned.time_s.begin();
@@ -205,13 +205,13 @@ JointMotion Until(double time_s, JointMotion planned) {
   return planned;
 }
 
-/// What a controller knows of a calibration.
+/// The part of a calibration that a controller knows.
 RuntimeContent ContentOf(DeployAs as) {
   if (as == DeployAs::kNominal) return RuntimeContent::kNominal;
   return as == DeployAs::kUrdf ? RuntimeContent::kGeometry : RuntimeContent::kEverything;
 }
 
-/// What is commanded for the plan, or why nothing can be.
+/// The commands for the plan, or the reason why there are none.
 struct Commanded {
   Eigen::MatrixXd q;
   std::string refused;
@@ -226,9 +226,9 @@ Commanded Commands(const Project& project, const StoredCalibration& calibration,
           corrected.broken.empty() ? "" : corrected.broken.front()};
 }
 
-/// How a controller that knows a calibration has the root link at the first rest, on flat soles: as
-/// planned, since its commands make up for the errors. That of the nominal robot takes the inertial
-/// unit as mounted by the robot description.
+/// Attitude that a controller with a calibration expects of the root link at the first rest on flat
+/// soles: the planned one, because its commands compensate the errors. The controller of the
+/// nominal robot takes the inertial unit as mounted by the robot description.
 std::optional<Eigen::Matrix3d> CalibratedMounting(const Project& project,
                                                   const JointMotion& planned, DeployAs as) {
   if (as == DeployAs::kNominal) return std::nullopt;
@@ -238,8 +238,8 @@ std::optional<Eigen::Matrix3d> CalibratedMounting(const Project& project,
   return T_root_link[static_cast<std::size_t>(standing)].linear().transpose();
 }
 
-/// What a critically damped servo of this frequency must be told so that it follows q: the inverse
-/// of its lag, by differences of the samples.
+/// Command with which a critically damped servo of this frequency follows q: the inverse of its
+/// lag, by differences of the samples.
 Eigen::MatrixXd FeedForward(const Eigen::MatrixXd& q, const Eigen::VectorXd& time_s,
                             double frequency, double lag_s) {
   Eigen::MatrixXd command = q;
@@ -272,7 +272,7 @@ const char* DeployName(DeployAs as) {
 std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibration& calibration,
                                       const JointMotion& motion, const DeployOptions& options,
                                       const Progress& progress) {
-  constexpr double kHeld = 20.0;  // times stiffer: what integration makes of a servo
+  constexpr double kHeld = 20.0;  // factor of stiffness that represents integrating servos
   const JointMotion given = OnItsFeet(project, motion);
   CheckPlan(given);
   const JointMotion planned = WithOpenJointsAtRest(project, Until(options.until_s, given));
@@ -291,7 +291,7 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
     commands[i].q = FeedForward(commands[i].q, planned.time_s, physics.servo_frequency,
                                 2.0 / physics.servo_frequency - physics.time_step_s);
   });
-  const std::size_t runs = options.stabilised.size();  // of each robot
+  const std::size_t runs = options.stabilised.size();  // runs of each robot
   std::vector<Execution> executions(runs * options.as.size());
   const auto play = [&](std::size_t i) {
     Execution& execution = executions[i];
@@ -310,7 +310,7 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
          .watch = [&](Eigen::Index sample, const Eigen::VectorXd& posture,
                       const VirtualRobot& body) { watch.Look(sample, posture, body); }});
     watch.Store(execution);
-    // One run of each robot is enough to look at.
+    // One run of each robot is shown.
     if (i % runs == 0) execution.playback = watch.playback();
   };
   ForAll(executions.size(), options.threads, play, progress);
@@ -342,7 +342,7 @@ std::string FormatExecutions(const RobotTree& tree, const std::string& calibrati
     if (one.playback.time_s.empty()) continue;
     playbacks.push_back({DeployName(one.as), one.stabilised, &one.playback});
   }
-  // The pictures stand on one line, so that people can read what is before them.
+  // The pictures are on one line, so that the text before them can be read.
   std::string text = JsonText(json);
   text.resize(text.rfind("\n}"));
   return text + ",\n  \"playback\": " + FormatPlaybacks(tree, playbacks) + "\n}\n";

@@ -16,9 +16,10 @@
 namespace elastocal {
 namespace {
 
-constexpr Eigen::Index kPosturesOfMotion = 40;  // evenly: sizes change little with more
+// Evenly chosen; the result changes little with more.
+constexpr Eigen::Index kPosturesOfMotion = 40;
 
-/// The link that the others are seen from, by row of the motion.
+/// The rows of the motion by the link from which the others are seen.
 std::map<int, std::vector<Eigen::Index>> RowsByStandingLink(const Project& project,
                                                             const JointMotion& motion) {
   const int foot = project.soles.empty() ? 0 : project.soles.front().link;
@@ -32,7 +33,7 @@ std::map<int, std::vector<Eigen::Index>> RowsByStandingLink(const Project& proje
   return rows;
 }
 
-/// Limbs by the link at their end, each link once.
+/// Limbs by the link at their end; each link occurs once.
 std::vector<std::pair<int, std::string>> EndsByName(const Project& project) {
   std::vector<std::pair<int, std::string>> ends;
   for (const Chain& chain : project.chains) {
@@ -45,7 +46,7 @@ std::vector<std::pair<int, std::string>> EndsByName(const Project& project) {
   return ends;
 }
 
-/// Parameters of the model that the covariance has: their places in both.
+/// Parameters that model and covariance have in common, with their places in both.
 struct SharedParameters {
   std::vector<int> model, covariance;
 };

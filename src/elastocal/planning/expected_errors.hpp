@@ -12,26 +12,26 @@
 
 namespace elastocal {
 
-/// By how much the end of a limb, or the root link, will be beside its place on the real robot
-/// because the calibration does not know its geometry better, root mean square over a motion: seen
-/// from the foot that stands (the first of several), or from a root link that is held. What no
-/// recording tells (the frame of a hand against its markers) is in it as its prior has it.
+/// Expected error of the end of a limb, or of the root link, because the calibration does not know
+/// the geometry better: root mean square over a motion, seen from the foot that stands (the first
+/// of several) or from a held root link. Directions that no recording determines (such as the frame
+/// of a hand relative to its markers) enter with their prior.
 struct ExpectedAtLimb {
   std::string limb;       ///< a chain of the project, or the root link
   double position = 0.0;  ///< m
   double attitude = 0.0;  ///< rad
 };
 
-/// From the covariance of the calibration, of some postures of the motion. Springs aside, and what
-/// a stabiliser or fast motion adds. Limbs of which the recording says nothing have no entry; no
-/// entries where the covariance is not known.
+/// Computes expected errors from the covariance of the calibration, over some postures of the
+/// motion. Deflections by springs, and the effects of a stabiliser or of fast motion, are left out.
+/// Limbs of which the recording says nothing have no entry. Empty where the covariance is unknown.
 std::vector<ExpectedAtLimb> ExpectErrors(const Project& project,
                                          const StoredCalibration& calibration,
                                          const CalibrationEstimate& estimate,
                                          const JointMotion& motion);
 
-/// The same of a calibration in files, whose covariance is read. Throws InputError where the file
-/// of the covariance cannot be used.
+/// As above, for a calibration in files, whose covariance is read. Throws InputError where the
+/// covariance file cannot be used.
 std::vector<ExpectedAtLimb> ExpectErrors(const CalibratedRobot& robot, const JointMotion& motion);
 
 }  // namespace elastocal

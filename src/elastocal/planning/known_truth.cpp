@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-/// Markers of the whole upper body: on all links that no leg carries.
+/// Markers of the upper body: on all links that no leg carries.
 std::vector<std::string> UpperBodyMarkers(const Project& project) {
   std::set<std::string> legs;
   for (const Chain& chain : project.chains) {

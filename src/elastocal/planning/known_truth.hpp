@@ -10,18 +10,18 @@
 
 namespace elastocal {
 
-/// A robot with known errors, to show that a calibration finds them.
+/// A robot with known errors, for tests of a calibration.
 struct KnownTruth {
   ErrorModel model;
-  Eigen::VectorXd delta;  ///< one an entry of model.parameters, SI
+  Eigen::VectorXd delta;  ///< errors, one an entry of model.parameters, SI
 };
 
-/// Errors of the size of the paper's Table 1 in all that no chain named `leg...` carries. The
-/// cameras' frame is a few metres away, the markers a few millimetres from where they were meant to
-/// be.
+/// Draws errors of the size of the paper's Table 1 for all that no chain named `leg...` carries.
+/// The cameras' frame is a few metres away; the markers are a few millimetres from their nominal
+/// positions.
 KnownTruth DrawUpperBodyErrors(const Project& project, std::uint64_t seed);
 
-/// An estimated parameter of a joint beside its true value, SI.
+/// An estimated parameter of a joint with its true value, SI.
 struct FoundParameter {
   Parameter parameter;
   double truth = 0.0, estimate = 0.0, sd = 0.0;

@@ -12,8 +12,8 @@
 namespace elastocal {
 namespace {
 
-constexpr double kMostShare = 0.1;    // of a range, at either end
-constexpr double kMostInside = 0.02;  // likewise: what design keeps by default
+constexpr double kMostShare = 0.1;    // share of a range, at either end
+constexpr double kMostInside = 0.02;  // likewise: margin that design keeps by default
 
 }  // namespace
 
@@ -27,7 +27,7 @@ Project LeaveRoom(Project project, double room_rad) {
     const double room = std::min(room_rad, kMostShare * range);
     const auto i = static_cast<Eigen::Index>(c);
     double &lower = project.motion.lower[i], &upper = project.motion.upper[i];
-    // Postures stay as far inside as they were, which a motion needs to keep its balance.
+    // Postures keep their distance to the limits, which a motion needs for its balance.
     const auto kept = [&](double gap) { return room + std::clamp(gap, 0.0, kMostInside * range); };
     lower = std::max(lower, joint.limits.lower + kept(lower - joint.limits.lower));
     upper = std::min(upper, joint.limits.upper - kept(joint.limits.upper - upper));

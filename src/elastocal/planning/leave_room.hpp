@@ -5,10 +5,9 @@
 
 namespace elastocal {
 
-/// The project with the limits of its turning joints so much nearer to each other at either end,
-/// rad, but at most by a tenth of a joint's range: what commands that are corrected later may need
-/// beyond what is planned. Ranges of postures follow. Throws InputError where the posture of rest
-/// is then beyond a limit.
+/// The project with narrower limits of its revolute joints: by `room_rad` at either end, but by at
+/// most a tenth of a joint's range. This leaves room for later corrections of the planned commands.
+/// Ranges of postures follow. Throws InputError where the posture of rest is then beyond a limit.
 Project LeaveRoom(Project project, double room_rad);
 
 }  // namespace elastocal

@@ -48,7 +48,7 @@ NextPostures DesignNextPostures(const Project& project, const std::filesystem::p
                                  .changes = true,
                                  .joints = run.check.suspects},
                                 progress);
-  } catch (const InputError& error) {  // a project that says nothing of what postures may be
+  } catch (const InputError& error) {  // a project that does not say which postures are allowed
     next.why_none = error.what();
     return next;
   }

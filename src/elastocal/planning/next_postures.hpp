@@ -13,24 +13,25 @@
 
 namespace elastocal {
 
-inline constexpr int kNextPostures = 5;  ///< that are usually proposed
+inline constexpr int kNextPostures = 5;  ///< usual number of proposed postures
 
-/// Postures to be recorded after a check that could not name the joint that has changed.
+/// Postures to be recorded after a check that could not name the joint that has moved.
 struct NextPostures {
-  std::vector<ChainPostures> postures;  ///< by chain that moves a suspect; empty where none is open
+  /// By chain that moves a suspect; empty where nothing is open.
+  std::vector<ChainPostures> postures;
   std::string
-      why_none;  ///< why there are none although the check leaves something open, else empty
+      why_none;  ///< reason why there are none although the check leaves something open, else empty
 };
 
-/// Chooses `count` postures of each chain that moves one of the suspects of a check, which tell
-/// best which of them has changed (DesignFollowUp). The seed is that of the check, or 1. Throws
-/// what DesignFollowUp throws.
+/// Chooses `count` postures of each chain that moves a suspect of a check, such that they tell best
+/// which suspect has moved (DesignFollowUp). The seed is that of the check, or 1. Throws as
+/// DesignFollowUp.
 NextPostures DesignNextPostures(const Project& project, const std::filesystem::path& calibration,
                                 const CheckRun& run, const CheckOptions& options,
                                 int count = kNextPostures, const Progress& progress = {});
 
-/// The same after a check by tables of observations: `count` postures in all, touches and looks
-/// (DesignObservations). Throws what DesignObservations throws.
+/// As above, after a check by tables of observations: `count` postures altogether, touches and
+/// looks (DesignObservations). Throws as DesignObservations.
 NextPostures DesignNextPostures(const Project& project, const std::filesystem::path& calibration,
                                 const ContactCheck& run, const CheckOptions& options,
                                 int count = kNextPostures, const Progress& progress = {});

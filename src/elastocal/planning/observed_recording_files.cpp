@@ -74,7 +74,7 @@ std::string CornerTable(const Project& project, const ObservedRecording& recordi
   return table.text();
 }
 
-/// The truth beside the robot, as summary.json has what was estimated of it.
+/// The truth beside the robot, in the form in which summary.json has the estimates.
 std::string QuantitiesYaml(const ObservedRecording& recording) {
   YAML::Emitter yaml;
   const auto list = [&](const char* key, const auto& values) {

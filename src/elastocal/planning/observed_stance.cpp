@@ -19,7 +19,7 @@ namespace {
 constexpr int kTries = 400;
 constexpr int kTriesOfLooks = 40000;  // nearly all end before legs are placed
 
-/// Coordinates of the joints before a link that are not of a foot's leg.
+/// Coordinates of the joints that move a link, without those of a foot's leg.
 std::vector<int> CoordinatesBefore(const RobotTree& tree, const ObservationSetup& setup, int link) {
   std::set<int> of_legs;
   for (const ContactFoot& foot : setup.feet) {
@@ -86,7 +86,7 @@ bool ReachWithPlate(MovingChain& hand, const ContactPlate& plate, const Transfor
     Eigen::MatrixXd J(6, hand.size());
     J << hand.PointJacobian(described.link, found.translation()),
         hand.RotationJacobian(described.link);
-    // A joint at its end that would move beyond it takes no part.
+    // A joint at its limit that would move beyond it is left out.
     Eigen::Matrix<double, 6, 6> gram = J * J.transpose();
     gram.diagonal().array() += kDamping * std::min(1.0, error.squaredNorm());
     Eigen::VectorXd step = J.transpose() * gram.ldlt().solve(error);
@@ -146,7 +146,7 @@ std::string ObservedPostureSampler::Blame() const {
 }
 
 PlacedPosture ObservedPostureSampler::DrawStance() {
-  // Shares of the leg's length, and rad: about as far as legs reach on both feet.
+  // Shares of the leg's length, and rad: about as far as legs reach while both feet stand.
   constexpr double kLower = 0.08, kHigher = 0.02;
   constexpr double kYaw = 0.15, kPitch = 0.12, kRoll = 0.06;
   PlacedPosture pose{robot_->rest, robot_->T_world_root};
@@ -199,7 +199,7 @@ bool ObservedPostureSampler::TryTouch(int plate, const TableTop& table, PlacedPo
   return Blamed("balance");
 }
 
-/// Whether the hand comes from above to the touch, as a motion does that is planned later.
+/// Whether the hand reaches the touch from above, as in a motion that is planned later.
 bool ObservedPostureSampler::ReachesAbove(int plate, const PlacedPosture& touch) {
   const ContactPlate& of = setup_.plates[Size(plate)];
   Transform T_root_face =
@@ -247,7 +247,7 @@ std::optional<Eigen::VectorXd> ObservedPostureSampler::DrawTouch(int plate) {
 
 std::optional<Eigen::VectorXd> ObservedPostureSampler::DrawLook() {
   blame_.clear();
-  // Camera and tag both on the robot tell more than one of them in the room.
+  // A camera and a tag that are both on the robot tell more than one of them in the room.
   const std::vector<TagInCamera>& views = project_.contact->seen_tags;
   const auto between_links = [&](const TagInCamera& view) {
     return setup_.instruments[Size(view.instrument)]->links.size() == 2;

@@ -5,15 +5,14 @@
 
 namespace elastocal {
 
-/// How far something was from where it should be, over all samples: root mean square and largest
-/// value.
+/// Deviation from a wanted pose over all samples: root mean square and largest value.
 struct PlaceError {
   double rms_m = 0.0, max_m = 0.0;
   double rms_rad = 0.0, max_rad = 0.0;
   int samples = 0;
 };
 
-/// Sums it up, sample by sample.
+/// Sums up deviations, sample by sample.
 class PlaceErrorSum {
  public:
   void Add(const Transform& wanted, const Transform& got);

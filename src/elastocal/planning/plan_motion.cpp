@@ -43,7 +43,7 @@ void CheckPlanOptions(const MotionPlanOptions& options) {
          "1 s or more");
 }
 
-/// The worst values of a motion beside their limits.
+/// Lists the worst values of a motion with their limits.
 class LimitList {
  public:
   LimitList(const Project& project, const MotionMargins& margins, const MotionLimits& limits,
@@ -83,7 +83,7 @@ class LimitList {
 
 std::vector<LimitUse> LimitUses(const Project& project, const MotionMargins& margins,
                                 const MotionLimits& limits, double rate_hz) {
-  // Without the minus of what rounds to zero.
+  // Without the minus of a value that rounds to zero.
   const auto mm = [](double metres) {
     return fmt::format("{:.1f}", std::round(1e4 * metres) / 10.0 + 0.0);
   };
@@ -135,9 +135,10 @@ std::string DescribeLeftOut(const Project& project, const PlannedTour& set, cons
                      left.at_rest ? "at rest" : "on every way there");
 }
 
-/// Of joints whose range the project asks for: plainly a part of what postures have by default.
+/// Describes joints that leave the project's range by a clear part of the default range of
+/// postures.
 std::vector<std::string> DescribeBeyondRanges(const Project& project, const JointMotion& motion) {
-  constexpr double kPlainly = 0.01;  // of a range
+  constexpr double kPlainly = 0.01;  // share of a range
   constexpr double kTolerance = 1e-6;
   std::vector<std::string> beyond;
   for (Eigen::Index c = 0; c < motion.q.cols(); ++c) {
@@ -163,7 +164,7 @@ std::vector<std::string> DescribeBeyondRanges(const Project& project, const Join
   return beyond;
 }
 
-/// The robot where it moves: between tables, if the project has some.
+/// The robot for the motion: between tables, if the project has some.
 std::unique_ptr<StandingRobot> StandForMotion(const Project& project,
                                               const MotionPlanOptions& options) {
   MotionLimits limits = options.limits;
@@ -173,7 +174,7 @@ std::unique_ptr<StandingRobot> StandForMotion(const Project& project,
   return StandAtTables(project, limits, setup);
 }
 
-/// Whether no posture of the set can be kept and reached.
+/// Whether no posture of the set can be held and reached.
 bool IsImpossible(const PlannedTour& set) {
   return set.motion.q.rows() == 0 ||
          (set.visits.empty() && !set.left_out.empty() && set.left_out[0].posture >= 0);

@@ -19,125 +19,129 @@
 
 namespace elastocal {
 
+/// Settings of PlanMotion.
 struct MotionPlanOptions {
-  /// plan.balanced = false gives a motion that may break the limits, to see what comes of it.
+  /// With plan.balanced = false the motion may exceed limits; its effects can then be studied.
   PlanOptions plan = {};
-  MotionLimits limits = {};  ///< but for the share of torques, which is the next member
+  MotionLimits limits = {};  ///< without the share of torques, which is the next member
   std::optional<double> torque_share = {};  ///< default: MotionSetup::motion_effort_share
-  int threads = 2;  ///< chains planned at a time; the result does not depend on it
-  ValidationOptions validation = {};  ///< of PlanValidationMotion
-  ApproachOptions approach = {};      ///< of hands to tables, in projects with `contact`
+  int threads = 2;  ///< chains that are planned at the same time; the result does not depend on it
+  ValidationOptions validation = {};  ///< for PlanValidationMotion
+  ApproachOptions approach = {};  ///< for hands that approach tables, in projects with `contact`
 };
 
-/// The worst value of a quantity over a whole motion beside its limit, in words for people.
+/// The worst value of a quantity over a whole motion with its limit, as text.
 struct LimitUse {
   std::string what;  ///< "torque, % of limit"
   std::string worst,
       limit;            ///< in the unit that `what` names; `limit` is empty where there is none
-  double time_s = 0.0;  ///< when the worst value occurs
-  std::string where;    ///< joint, pair of parts or foot; empty where it is of the whole robot
+  double time_s = 0.0;  ///< time of the worst value
+  std::string where;    ///< joint, pair of parts or foot; empty for the whole robot
   bool broken = false;
 
-  /// "torque, % of limit: 104 at 12.31 s (leg_left_4_joint), the limit is 90".
+  /// Text such as "torque, % of limit: 104 at 12.31 s (leg_left_4_joint), the limit is 90".
   std::string Describe() const;
 };
 
-/// A motion of the whole robot through sets of postures, one set a chain.
+/// A motion of the whole robot through sets of postures, one for each chain.
 struct MotionPlan {
-  std::vector<PostureTour> sets;     ///< what was to be visited
-  std::vector<PlannedTour> planned;  ///< one a set, the parts of the motion in turn
+  std::vector<PostureTour> sets;     ///< the sets to be visited
+  std::vector<PlannedTour> planned;  ///< parts of the motion in turn, one for each set
   PlannedMotion whole;
   double rate_hz = 100.0;
-  MotionMargins margins;         ///< of the whole motion, from its samples alone
-  std::vector<LimitUse> limits;  ///< the same beside the limits
-  double seconds = 0.0;          ///< that the planning took
+  MotionMargins margins;         ///< margins of the whole motion, computed from its samples
+  std::vector<LimitUse> limits;  ///< worst values with their limits
+  double seconds = 0.0;          ///< duration of the planning
 
-  /// Sets of which no posture can be kept and reached. With one of these there is no motion.
+  /// Sets of which no posture can be held and reached. With one of these there is no motion.
   std::vector<std::string> impossible;
-  /// What of `limits` the motion breaks: nothing, unless the options ask for the impossible or the
-  /// motion is not balanced. Such a motion should not be played.
+  /// Those of `limits` that the motion exceeds. Empty unless the options ask for the impossible, or
+  /// the motion is not balanced. A motion that exceeds limits should not be played.
   std::vector<LimitUse> broken() const;
-  /// What each set leaves out and why, a sentence each.
+  /// Postures that each set leaves out, with the reason, a sentence each.
   std::vector<std::string> left_out;
-  /// Joints that leave the range that the project asks for (design.range_deg, limit_margin), a
-  /// sentence each: postures keep it, but the motion has to balance.
+  /// Joints that leave the range of the project (design.range_deg, limit_margin), a sentence each:
+  /// postures keep it, but the motion has to balance.
   std::vector<std::string> beyond_ranges;
 };
 
-/// Plans the motion through calibration postures (paper, section 3.6): order, ways that avoid the
-/// robot's own parts, balance on one foot or two with changes between. The same input gives the
-/// same motion. Progress counts chains.
+/// Plans the motion through calibration postures (paper, section 3.6): their order, ways that avoid
+/// collisions of the robot's parts, and balance on one foot or two with changes between. The same
+/// input gives the same motion. Progress counts chains.
 ///
 /// Without soles in the project, the root link is held still and nothing is balanced.
 ///
-/// In a project with `contact` the robot stands on its feet as there, the postures are held as they
-/// are, and each touch is reached from above its table (StandAtTables, TouchTours).
+/// In a project with `contact` the robot stands on its feet as stated there, the postures are held
+/// exactly, and each touch is reached from above its table (StandAtTables, TouchTours).
 ///
-/// Throws InputError for shares outside (0, 1] in the options, for a chain
-/// that stands on what is no sole, and where the robot cannot stand.
+/// Throws InputError for shares outside (0, 1] in the options, for a chain that stands on something
+/// that is no sole, and for a robot that cannot stand.
 MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& postures,
                       const MotionPlanOptions& options, const Progress& progress = {});
 
-/// The same for a validation motion of all chains of the project's section `design` and of those on
-/// the other side. The seed draws its postures.
+/// As PlanMotion, for a validation motion of all chains of the project's section `design` and their
+/// mirror images. The seed draws its postures.
 MotionPlan PlanValidationMotion(const Project& project, ValidationKind kind, std::uint64_t seed,
                                 const MotionPlanOptions& options, const Progress& progress = {});
 
 /// Names of the sets that PlanValidationMotion plans.
 std::vector<std::string> ValidationChains(const Project& project);
 
+/// Settings of TryMotion.
 struct MotionTrialOptions {
   int robots = 1;
-  std::uint64_t seed = 1;  ///< of the first robot; the next ones have the numbers after it
+  std::uint64_t seed = 1;  ///< seed of the first robot; the next ones have the following numbers
   double leg_errors =
       TruthOptions{}.leg_geometry_scale;  ///< factor on their legs' geometric errors
   double floor_friction = 0.5;
-  bool stabilised = true;  ///< false: they follow the motion whatever feet and inertial unit feel
-  int threads = 2;         ///< robots at a time; the result does not depend on it
+  /// false: the robots follow the motion without feedback from feet and inertial unit
+  bool stabilised = true;
+  /// Robots that are simulated at the same time; the result does not depend on it.
+  int threads = 2;
 };
 
-/// How one robot came through a motion.
+/// The run of one robot through a motion.
 struct MotionTrial {
   std::uint64_t seed = 1;
   StandingRun run;
 };
 
-/// Of a plan for a robot with nearer limits (LeaveRoom): the distance to the end of a joint's range
-/// is counted to the joint's own limit, and so is what it has to be.
+/// Adjusts a plan for a robot with narrower limits (LeaveRoom): distances to the end of a joint's
+/// range, and the required ones, are then counted to the joint's own limit.
 void CountToOwnLimits(const Project& own, const Project& narrow, const MotionPlanOptions& options,
                       MotionPlan& plan);
 
-/// Plays a motion on robots with errors that stand free (MuJoCo). Progress counts robots. Throws
+/// Plays a motion on free-standing robots with errors (MuJoCo). Progress counts robots. Throws
 /// InputError for a project without soles.
 std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& motion,
                                    const MotionTrialOptions& options,
                                    const Progress& progress = {});
 
-/// What `plan` writes: the motion and, if that is `motion.csv`, motion_margins.json beside it.
-/// Where they are wanted: the motion as a ROS trajectory, and in a folder a motion of each chain,
-/// CHAIN_motion.csv, that simulate plays as a trial.
+/// Files written by `plan`: the motion and, for `motion.csv`, motion_margins.json beside it. If
+/// requested, also the motion as a ROS trajectory, and in a folder a motion of each chain,
+/// CHAIN_motion.csv, which simulate plays as a trial.
 struct MotionFiles {
   std::filesystem::path motion, margins;
   std::filesystem::path trajectory = {};  ///< empty: none
-  RosVersion ros = RosVersion::kRos2;     ///< of the trajectory's stamps
+  RosVersion ros = RosVersion::kRos2;     ///< version of ROS for the trajectory's stamps
   std::vector<std::filesystem::path> chains = {};
 
   explicit MotionFiles(const std::filesystem::path& output);
 
-  /// Adds a file for each chain. Throws InputError where a file of that name stands there that is
-  /// no planned motion: it is not replaced.
+  /// Adds a file for each chain. Throws InputError where a file with that name exists that is no
+  /// planned motion, and so is not replaced.
   void AddChains(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
-  /// To the set, with how files of these kinds begin.
+  /// Declares the files in the set, with the beginnings by which such files are recognised.
   void Declare(OutputSet& outputs) const;
 };
 
-/// Puts the contents of these files, which have been declared, into the set.
+/// Sets the contents of these files, which must be declared.
 void SetMotionFiles(const MotionFiles& files, const Project& project, const MotionPlan& plan,
                     const std::vector<MotionTrial>& trials, OutputSet& outputs);
 
-/// The plan for programs (JSON): times, postures visited and left out, margins, and how the robots
-/// came through that tried it.
+/// The plan as JSON: times, postures visited and left out, margins, and the runs of the robots that
+/// tried it.
 std::string FormatMotionSummary(const Project& project, const MotionPlan& plan,
                                 const std::vector<MotionTrial>& trials);
 

@@ -27,14 +27,14 @@ std::vector<std::string> JointNames(const RobotTree& tree) {
   return names;
 }
 
-/// What all tables of motions of the robot begin with.
+/// Header with which all motion tables of the robot begin.
 std::string MotionColumns(const RobotTree& tree) {
   std::string columns = "time";
   for (const std::string& joint : JointNames(tree)) columns += "," + MakeCell(joint);
   return columns;
 }
 
-/// Whether the cells of a line are a time and so many positions, as FormatMotionTable writes them.
+/// Whether a line consists of a time and `positions` positions, in the digits of FormatMotionTable.
 bool HasOwnDigits(std::string line, std::size_t positions) {
   std::vector<std::string_view> cells;
   if (!SplitCells(line, ',', Quotes::kEnclose, cells) || cells.size() <= positions) return false;
@@ -48,7 +48,7 @@ bool HasOwnDigits(std::string line, std::size_t positions) {
   return true;
 }
 
-/// "left_sole_link+right_sole_link", as SupportNames reads it.
+/// Support as text, "left_sole_link+right_sole_link", which SupportNames reads.
 std::string SupportCell(const RobotTree& tree, const std::vector<int>& links) {
   std::string cell;
   for (const int link : links) {

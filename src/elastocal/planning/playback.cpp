@@ -25,7 +25,7 @@ constexpr double kUnit = 1e-4;  // m or rad
 
 std::size_t At(int index) { return static_cast<std::size_t>(index); }
 
-/// Links that a joint moves, the root link, and the tips where they are others.
+/// Links that a joint moves, the root link, and ends of limbs that are neither.
 std::vector<int> PlayedLinks(const RobotTree& tree, const std::vector<PlaybackTip>& tips) {
   std::vector<int> links = {0};
   for (const Joint& joint : tree.joints) links.push_back(joint.child_link);
@@ -35,7 +35,7 @@ std::vector<int> PlayedLinks(const RobotTree& tree, const std::vector<PlaybackTi
   return links;
 }
 
-/// Bytes in zlib's format (RFC 1950).
+/// Bytes compressed in zlib's format (RFC 1950).
 std::string Deflated(const std::string& bytes) {
   uLongf size = compressBound(bytes.size());
   std::string result(size, '\0');
@@ -47,8 +47,8 @@ std::string Deflated(const std::string& bytes) {
   return result;
 }
 
-/// Each number, in kUnit, as what it differs by from that of the picture before (of the first: from
-/// zero), in a byte; where that is not enough, -128 and then the number itself in four bytes,
+/// Encodes numbers in kUnit: each as its difference from that in the picture before (in the first:
+/// from zero) in one byte or, if that is too small, as -128 and the number itself in four bytes,
 /// little-endian. All of it deflated and in base64.
 template <typename Picture>
 std::string Base64Differences(const std::vector<Picture>& pictures) {
@@ -76,7 +76,7 @@ std::string Base64Differences(const std::vector<Picture>& pictures) {
   return Base64(Deflated(bytes));
 }
 
-/// By picture x, y, z and quaternion x, y, z, w.
+/// By picture: x, y, z and quaternion x, y, z, w.
 std::vector<double> PoseNumbers(const std::vector<Transform>& poses) {
   std::vector<double> numbers;
   for (const Transform& pose : poses) {
@@ -90,7 +90,7 @@ std::vector<double> PoseNumbers(const std::vector<Transform>& poses) {
 Json TipJson(const RobotTree& tree, const PlaybackTip& tip) {
   Json distances = Json::array();
   for (double distance : tip.distance_m) {
-    // Not a number becomes null.
+    // NaN becomes null.
     distances.push_back(std::isfinite(distance) ? Json(std::round(distance / kUnit) / 10.0)
                                                 : Json(nullptr));
   }
@@ -117,7 +117,8 @@ PlaybackRecorder::PlaybackRecorder(const RobotTree& tree, std::vector<PlaybackTi
   playback_.tips = std::move(tips);
 }
 
-/// The plan's feet do not move while they stand: the root link follows from the one that stands.
+/// Feet do not move in the plan while they stand, so that the root link follows from the standing
+/// foot.
 Transform PlaybackRecorder::PlanRoot(const std::vector<Transform>& T_root_link, int foot,
                                      const std::vector<Transform>& T_world_link) {
   if (foot_ < 0) {

@@ -9,11 +9,11 @@
 
 namespace elastocal {
 
-/// What each of several postures tells beside a prior, to choose the best of them.
+/// Information of several postures beside a prior, to choose the best of them.
 class PostureInformation {
  public:
-  /// From evaluated residuals, whose first blocks are the observations; `posture`: by observation,
-  /// from 0 to `count` - 1. The blocks that follow are the prior.
+  /// Takes evaluated residuals, whose first blocks are the observations and whose other blocks are
+  /// the prior. `posture` is the posture of each observation, from 0 to `count` - 1.
   PostureInformation(const ObservationResiduals& residuals, const std::vector<int>& posture,
                      int count);
 
@@ -23,22 +23,24 @@ class PostureInformation {
   /// det(prior).
   double Of(const std::vector<int>& postures) const;
 
-  /// By unknown, what these postures say of a change of it alone that the prior does not know of:
-  /// the diagonal of A - A (A + P^-1)^-1 A, with A the sum of J^T J and P the prior's covariance.
+  /// For each unknown: information of these postures about a change of it alone that the prior does
+  /// not contain. It is the diagonal of A - A (A + P^-1)^-1 A, with A the sum of J^T J and P the
+  /// prior's covariance.
   Eigen::VectorXd OfChanges(const std::vector<int>& postures) const;
 
-  /// The best of the postures, `count` of them, each once: greedily, and then each of them
-  /// exchanged once for what is best beside the others.
+  /// The best `count` postures, each used once: chosen greedily, then each exchanged once for the
+  /// best one beside the others.
   std::vector<int> Choose(int count) const;
 
  private:
-  /// Adds a posture to a covariance (or takes it away: `sign` -1) and returns the gain.
+  /// Adds a posture to a covariance (removes it with `sign` -1) and returns the gain.
   double Update(int posture, double sign, Eigen::MatrixXd& covariance) const;
   double Gain(int posture, const Eigen::MatrixXd& covariance) const;
   int Best(const Eigen::MatrixXd& covariance, const std::vector<char>& taken) const;
 
-  std::vector<Eigen::MatrixXd> rows_;  // by posture: over the prior's standard deviations
-  Eigen::MatrixXd prior_;              // covariance
+  // By posture: rows in units of the prior's standard deviations.
+  std::vector<Eigen::MatrixXd> rows_;
+  Eigen::MatrixXd prior_;  // covariance of the prior
 };
 
 }  // namespace elastocal

@@ -36,7 +36,7 @@ std::unique_ptr<StandingRobot> StandProjectRobot(const Project& project,
                      "' of the section 'design' stands on feet, but there is no section 'standing' "
                      "with their soles");
   }
-  // Postures may be designed right at the margin.
+  // Postures may be designed exactly at the margin.
   constexpr double kShareOfMargin = 0.8;
   auto robot = std::make_unique<StandingRobot>(project.tree, project.soles, limits);
   robot->limits.clearance = kShareOfMargin * project.motion.sphere_margin;

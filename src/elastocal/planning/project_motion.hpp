@@ -12,28 +12,28 @@
 
 namespace elastocal {
 
-/// The project's robot, standing in its posture of rest, with what keeps its parts apart: the
-/// contacts of all chains of the section `design`. Without soles its root link is held still.
-/// Throws InputError where a chain of the section `design` stands on feet and there are no soles,
-/// and where the robot cannot stand.
+/// The project's robot, standing in its posture of rest, with the contacts of all chains of the
+/// section `design`, which keep its parts apart. Without soles its root link is held still. Throws
+/// InputError where a chain of the section `design` stands on feet although there are no soles, and
+/// for a robot that cannot stand.
 std::unique_ptr<StandingRobot> StandProjectRobot(const Project& project,
                                                  const MotionLimits& limits);
 
-/// Pairs of spheres of all chains and of those on the other side, each once: those of
+/// Pairs of spheres of all chains and their mirror images, each pair once, in the order of
 /// StandingRobot::clearances.
 std::vector<SpherePair> AllContacts(const Project& project);
 
-/// Names of these pairs, "LHAND and BELLY", and then of the tables of StandAtTables.
+/// Names of these pairs, "LHAND and BELLY", then of the tables of StandAtTables.
 std::vector<std::string> ContactNames(const Project& project);
 
-/// The sets of a posture file. Throws what FeetOf throws.
+/// The sets of a posture file. Throws as FeetOf.
 std::vector<PostureTour> PostureTours(const StandingRobot& robot,
                                       const std::vector<ChainPostures>& chains);
 
-/// Links of soles, by sample, and times: what files hold.
+/// The motion as in files: times, and the links of the standing soles by sample.
 JointMotion ToJointMotion(const StandingRobot& robot, const SampledMotion& motion);
 
-/// "joint torque limit: leg_left_4_joint at 104 %" and the like.
+/// Reason why a posture is left out, as text: "joint torque limit: leg_left_4_joint at 104 %".
 std::string ReasonText(const Project& project, const LeftOut& left_out);
 
 }  // namespace elastocal

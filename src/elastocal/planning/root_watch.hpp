@@ -10,14 +10,15 @@
 
 namespace elastocal {
 
-/// How well a controller knows by its encoders where the root link is on the feet
-/// (Compensator::Forward, loads by statics), against the simulator.
+/// Compares a controller's estimate of the root link on the feet, by encoders
+/// (Compensator::Forward, loads by statics), with the simulator.
 class RootWatch {
  public:
-  /// `content`: what it knows of the calibration. Keeps a reference to the project.
+  /// `content` is the part of the calibration that the controller knows. Keeps a reference to the
+  /// project.
   RootWatch(const Project& project, const StoredCalibration& calibration, RuntimeContent content);
 
-  /// `support`: links of the feet that stand, one or more.
+  /// Compares one sample. `support` holds the links of the standing feet, at least one.
   void Look(const std::vector<int>& support, const VirtualRobot& body);
 
   PlaceError on_one_foot() const { return one_.Result(); }

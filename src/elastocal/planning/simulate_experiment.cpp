@@ -44,7 +44,7 @@ std::vector<std::size_t> ChooseTrials(const VirtualExperiment& experiment,
   return chosen;
 }
 
-/// The model that a calibration of these trials has, with its errors.
+/// The model that a calibration of these trials uses, with its errors.
 MatchedExperiment MatchTrials(const VirtualExperiment& experiment, const Project& project,
                               const std::vector<std::size_t>& chosen) {
   std::vector<Trial> trials;
@@ -64,7 +64,7 @@ MatchedExperiment MatchTrials(const VirtualExperiment& experiment, const Project
                          FindBaseParameters(model, project.identifiability).kept);
 }
 
-/// Memory grows with the duration of a trial, and nobody records for so long without a break.
+/// Refuses very long trials: memory grows with the duration, and real trials have breaks.
 void CheckDurations(const Simulation& simulation) {
   constexpr double kLongest = 3600.0;
   for (const std::size_t i : simulation.chosen) {
@@ -77,7 +77,7 @@ void CheckDurations(const Simulation& simulation) {
   }
 }
 
-/// Bars that stand upright beside the robot, in the frame of the room; their lengths have the
+/// Bars that stand upright beside the robot, in the frame of the room. Their lengths have the
 /// errors that the project states.
 std::vector<std::array<Eigen::Vector3d, 2>> DrawBars(const std::vector<ReferenceLength>& references,
                                                      std::uint64_t seed) {
@@ -93,7 +93,7 @@ std::vector<std::array<Eigen::Vector3d, 2>> DrawBars(const std::vector<Reference
   return bars;
 }
 
-/// Adds what the cameras see of the bars.
+/// Adds the markers of the bars to those that the cameras see.
 void SeeBars(const std::vector<ReferenceLength>& references,
              const std::vector<std::array<Eigen::Vector3d, 2>>& bars, double noise_sd,
              std::uint64_t seed, MarkerTrajectories& markers) {
@@ -112,7 +112,7 @@ void SeeBars(const std::vector<ReferenceLength>& references,
   }
 }
 
-/// The places of the markers on the links of the robot as it is, measured with noise.
+/// Positions of the markers on the links of the true robot, measured with noise.
 std::vector<MarkerMeasurement> MeasurePlaces(const std::vector<Marker>& markers, double sd,
                                              std::uint64_t seed) {
   Random random(seed ^ 0x91ace);
@@ -134,7 +134,8 @@ WaistGive LargestDeflection(const Simulation& simulation, std::size_t trial,
                             : LargestWaistDeflection(simulation.experiment, trial, motion);
 }
 
-/// Entries of Simulation::chosen, so that no thread is left with a long trial at the end.
+/// Entries of Simulation::chosen, the longest trials first, so that threads finish at about the
+/// same time.
 std::vector<std::size_t> LongestFirst(const Simulation& simulation) {
   std::vector<std::size_t> order(simulation.chosen.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -146,7 +147,7 @@ std::vector<std::size_t> LongestFirst(const Simulation& simulation) {
   return order;
 }
 
-/// The files where they are written before they are published.
+/// Paths of the files before they are published.
 TrialFiles Staged(const TrialFiles& files, OutputSet& outputs) {
   TrialFiles staged = files;
   for (fs::path* file : {&staged.markers, &staged.joints, &staged.truth}) {

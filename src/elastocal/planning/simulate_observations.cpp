@@ -17,7 +17,7 @@
 namespace elastocal {
 namespace {
 
-/// The virtual robot and all that is true around it.
+/// Draws the virtual robot and all truth around it.
 VirtualExperiment DrawRobot(const Project& project, const ObservationSetup& setup,
                             const VirtualExperimentOptions& options) {
   VirtualExperiment experiment;
@@ -47,7 +47,7 @@ VirtualExperiment DrawRobot(const Project& project, const ObservationSetup& setu
 
 std::vector<QuantityValue> DrawQuantities(const Project& project, const ObservationSetup& setup,
                                           double table_height_sd, std::uint64_t seed) {
-  constexpr double kMost = 0.1;  // of what nobody knows, m and rad
+  constexpr double kMost = 0.1;  // of unknown quantities, m and rad
   const Spread spread = FirstSpread(setup.sources);
   std::vector<QuantityValue> values;
   for (const Quantity& quantity : setup.quantities) {
@@ -67,7 +67,7 @@ std::vector<QuantityValue> DrawQuantities(const Project& project, const Observat
   return values;
 }
 
-/// The plate as it truly is.
+/// The true plate.
 PhysicalPlate TruePlate(const ObservationSetup& setup, std::size_t plate,
                         const std::vector<QuantityValue>& quantities, double edge) {
   PhysicalPlate physical = DescribedPlate(setup.plates[plate], edge);
@@ -76,7 +76,7 @@ PhysicalPlate TruePlate(const ObservationSetup& setup, std::size_t plate,
   return physical;
 }
 
-/// A robot that goes through postures and is measured in each.
+/// A robot that goes through postures and is measured in each of them.
 class Laboratory {
  public:
   Laboratory(const Project& project, ObservedRecording& recording, const Eigen::VectorXd& first)
@@ -153,7 +153,7 @@ class Laboratory {
     Wait(kSettle_s);
   }
 
-  /// Over where the hand is, uneven.
+  /// Pose of an uneven table below the hand.
   Transform TableUnder(int plate) {
     const QuantityValue& table =
         recording_.quantities[Size(recording_.setup.instruments[Size(plate)]->quantities[1])];
@@ -168,7 +168,7 @@ class Laboratory {
     return T * RotX(about_x) * RotY(random_.Normal(tilt));
   }
 
-  /// Height of the lowest corner of the plate over a table.
+  /// Height of the plate's lowest corner above a table.
   double Clearance(int plate, const Transform& T_world_table) const {
     const double half = 0.5 * options_.instruments.plate_edge;
     const Transform T = T_world_table.inverse() * robot_.PlatePose(plate);
@@ -246,7 +246,7 @@ class Laboratory {
       noise += blur.replicate(noise.size() / 2, 1);
     }
     if (measured.size() == noise.size()) return measured + noise;
-    // A pose: position, then the attitude turned about the body's axes.
+    // Noise of a pose: position, then rotation about the body's axes.
     measured.head<3>() += noise.head<3>();
     const Eigen::Quaterniond attitude(Eigen::Vector4d(measured.tail<4>()));
     const Eigen::Matrix3d turn = RotationFromVector(noise.tail<3>());

@@ -14,18 +14,18 @@
 
 namespace elastocal {
 
-/// What a virtual robot shows in one posture.
+/// Measurements of a virtual robot in one posture.
 struct SimulatedPosture {
-  int plate = -1;            ///< that touches; -1: none
+  int plate = -1;            ///< index of the plate that touches; -1: none
   Eigen::VectorXd encoders;  ///< by coordinate, rad or m
-  /// By instrument of the setup, as its kind measures; empty: it shows nothing.
+  /// By instrument of the setup, in the order of its kind; empty: no measurement.
   std::vector<Eigen::VectorXd> measured;
 };
 
 /// A recording of a robot that touches tables and is seen by instruments, with its truth.
 struct ObservedRecording {
-  VirtualExperiment robot;                ///< of which nothing is played
-  ObservationSetup setup;                 ///< with the feet where they are planned
+  VirtualExperiment robot;                ///< the robot; no trials are played
+  ObservationSetup setup;                 ///< with the planned poses of the feet
   std::vector<QuantityValue> quantities;  ///< by quantity of the setup: the truth
   std::vector<SimulatedPosture> postures;
   std::vector<std::string> warnings;  ///< touches that were given up
@@ -34,32 +34,33 @@ struct ObservedRecording {
 /// Plays postures on the virtual robot in MuJoCo, one after the other, and measures it at rest.
 ///
 /// The robot stands on the feet of `contact`, which lie flat on one level floor (LevelFeet) and do
-/// not move; without feet its root link is held still. In a touch, the hand is lowered on a table
-/// of its own until it lies flush, by the forces of MuJoCo's contact (TouchTable); the table is
-/// there only meanwhile. Truth beside the robot (tables, mountings, trackers, cameras) is drawn by
-/// the standard deviations of the set-up, at most 0.1 m and rad, with the seed of the robot, so
-/// that a second recording with the same robot seed has the same tables and mountings. Instruments
-/// show the poses of MuJoCo's links by their own geometry (Instrument::Predict), with noise.
+/// not move; without feet its root link is held still. In a touch, the hand is lowered on its table
+/// until it lies flush, by the forces of MuJoCo's contact (TouchTable); the table exists only
+/// during the touch. Truth beside the robot (tables, mountings, trackers, cameras) is drawn by the
+/// standard deviations of the set-up, at most 0.1 m and rad, with the seed of the robot, so that a
+/// second recording with the same robot seed has the same tables and mountings. Instruments measure
+/// the poses of MuJoCo's links by their own geometry (Instrument::Predict), with noise.
 ///
-/// `postures`: sets by the name of a plate, or kLooks. The same seeds give the same recording.
-/// Throws InputError for other names, for a plate without a table, and what MuJoCo refuses.
+/// `postures` holds sets by the name of a plate, or kLooks. The same seeds give the same recording.
+/// Throws InputError for other names, for a plate without a table, and for what MuJoCo refuses.
 ObservedRecording SimulateObservations(const Project& project,
                                        const std::vector<ChainPostures>& postures,
                                        const VirtualExperimentOptions& options,
                                        const Progress& progress = {});
 
-/// Files by name: observations.csv, corners.csv where cameras see tags, and truth.yaml
+/// Contents of the files by name: observations.csv, corners.csv if cameras see tags, and truth.yaml
 /// (docs/formats.md).
 std::map<std::string, std::string> FormatObservedRecording(const Project& project,
                                                            const ObservedRecording& recording);
 
-/// These files in a folder. An earlier simulation there is to be replaced; throws InputError where
-/// files of these names were not simulated (there is no truth.yaml beside them), unless `force`.
+/// Paths of these files in a folder. An earlier simulation there is replaced. Throws InputError
+/// where files with these names were not simulated (there is no truth.yaml beside them), unless
+/// `force` is set.
 std::vector<std::filesystem::path> FilesOfObservedSimulation(const Project& project,
                                                              const std::filesystem::path& folder,
                                                              bool force);
 
-/// The run for programs (JSON).
+/// The run as JSON.
 std::string FormatObservedSimulation(const ObservedRecording& recording);
 
 }  // namespace elastocal

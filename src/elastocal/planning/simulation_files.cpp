@@ -22,7 +22,7 @@ bool IsThere(const fs::path& file) {
   return fs::exists(fs::symlink_status(file, error));
 }
 
-/// Files of the trials that an experiment.yaml names, as far as they lie in its own folder.
+/// Files of the trials in an experiment.yaml that are in its own folder.
 std::vector<fs::path> TrialFilesIn(const fs::path& experiment) {
   std::vector<fs::path> files;
   const YamlValue root = YamlValue::Parse(ReadFile(experiment), experiment.string());
@@ -37,7 +37,7 @@ std::vector<fs::path> TrialFilesIn(const fs::path& experiment) {
   return files;
 }
 
-/// The files of an earlier simulation in the folder; none where there was none.
+/// The files of an earlier simulation in the folder; empty where there was none.
 std::vector<fs::path> EarlierSimulation(const SimulationFiles& files, bool force) {
   if (!IsThere(files.truth)) return {};
   std::vector<fs::path> earlier = {files.truth};
@@ -48,7 +48,7 @@ std::vector<fs::path> EarlierSimulation(const SimulationFiles& files, bool force
     const std::vector<fs::path> trials = TrialFilesIn(files.experiment);
     earlier.insert(earlier.end(), trials.begin(), trials.end());
   } catch (const InputError&) {
-    if (!force) throw;  // which files are of the earlier simulation, nobody knows
+    if (!force) throw;  // it is unknown which files belong to the earlier simulation
   }
   return earlier;
 }

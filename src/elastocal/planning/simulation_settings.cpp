@@ -234,7 +234,7 @@ double ParseIn(const SimulationSetting& setting, const std::string& text,
   return *number;
 }
 
-/// Assigns text to each type of option.
+/// Sets an option of each type from text.
 struct Assign {
   const SimulationSetting& setting;
   const std::string& text;
@@ -266,12 +266,12 @@ struct Assign {
   }
 };
 
-/// Shows each type of option.
+/// Shows an option of each type.
 struct Show {
   const SimulationSetting& setting;
 
   std::string operator()(const double* value) const {
-    // Without the noise of the unit's conversion.
+    // Without rounding errors of the unit's conversion.
     std::ostringstream text;
     text.precision(4);
     text << *value / setting.unit;

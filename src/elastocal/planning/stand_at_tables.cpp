@@ -14,8 +14,8 @@
 namespace elastocal {
 namespace {
 
-/// Puts the soles of the robot where the feet of the set-up stand, and the feet that the project
-/// leaves open where the soles are.
+/// Moves the soles of the robot to the feet of the set-up, and the feet that the project leaves
+/// open to the soles.
 void PlaceOnFloor(const Project& project, ObservationSetup& setup, StandingRobot& robot) {
   Transform T_floor_world = Transform::Identity();
   for (std::size_t f = 0; f < setup.feet.size(); ++f) {
@@ -41,7 +41,7 @@ void PlaceOnFloor(const Project& project, ObservationSetup& setup, StandingRobot
   robot.T_world_root = T_floor_world * robot.T_world_root;
 }
 
-/// Distance of a point to what is under the top of a table; negative inside.
+/// Distance of a point to the body below the top of a table; negative inside.
 double DistanceToTable(const TableTop& table, const Eigen::Vector3d& p_world) {
   const Eigen::Vector3d p = p_world - table.centre;
   const Eigen::Vector3d beyond(std::abs(p.x()) - 0.5 * table.size.x(),
@@ -49,7 +49,7 @@ double DistanceToTable(const TableTop& table, const Eigen::Vector3d& p_world) {
   return beyond.maxCoeff() < 0.0 ? beyond.maxCoeff() : beyond.cwiseMax(0.0).norm();
 }
 
-/// A table, and what of the robot shall not be in it.
+/// A table, and the parts of the robot that must not be inside it.
 class TableClearance {
  public:
   TableClearance(const TableTop& table, const ContactPlate& plate, const RobotTree& tree,
@@ -61,7 +61,7 @@ class TableClearance {
         corners_.emplace_back(face.T_link_face * Eigen::Vector3d(x * face.edge, y * face.edge, 0));
       }
     }
-    // What of the hand's own spheres reaches beyond the plate is rounder than the hand.
+    // Spheres of the hand that extend beyond the plate are rounder than the hand.
     const std::vector<Transform> T_root_link =
         LinkTransforms(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
     for (const CollisionSphere& sphere : spheres) {
@@ -89,10 +89,10 @@ class TableClearance {
   TableTop table_;
   int link_;
   std::vector<CollisionSphere> spheres_;
-  std::vector<Eigen::Vector3d> corners_;  // of the plate, in the frame of its link
+  std::vector<Eigen::Vector3d> corners_;  // corners of the plate, in the frame of its link
 };
 
-/// Puts the robot into its posture of rest on soles that have been moved.
+/// Moves the robot into its posture of rest on displaced soles.
 void RestOnSoles(const Project& project, StandingRobot& robot) {
   PlacedPosture rest{robot.rest, robot.T_world_root};
   if (!BalanceAtRest(robot, robot.AllFeet(), SupportCentre(robot, robot.AllFeet()), rest)) {

@@ -9,24 +9,24 @@
 
 namespace elastocal {
 
-/// The samples of a motion in which limits keep the end of a limb from its place
-/// (Compensator::stopped): how many, and the worst of them.
+/// Collects the samples of a motion in which limits keep the end of a limb from its place
+/// (Compensator::stopped): their number, and the worst of them.
 class StoppedJoints {
  public:
   explicit StoppedJoints(const RobotTree& tree) : tree_(tree) {}
 
-  /// After a Command of the sample at `time_s`.
+  /// Examines a sample after its Command.
   void Look(const Compensator& compensator, double time_s);
 
-  /// A sentence for each kind of limit: the joints at it in the worst sample, what is left there,
-  /// and what a user can do.
+  /// A sentence for each kind of limit: the joints at the limit in the worst sample, the deviation
+  /// there, and what the user can do.
   std::vector<std::string> Describe(int samples) const;
 
  private:
   struct Worst {
     int samples = 0;
-    double left_m = 0.0, time_s = 0.0;     ///< left: Compensator::left_m
-    std::vector<std::string> joints = {};  ///< with the limit
+    double left_m = 0.0, time_s = 0.0;     ///< `left_m` is Compensator::left_m
+    std::vector<std::string> joints = {};  ///< joints with their limits
   };
   void Look(const Compensator& compensator, double time_s, CompensatorStatus kind, Worst& worst);
   std::string JointAt(const Compensator& compensator, Eigen::Index coordinate) const;

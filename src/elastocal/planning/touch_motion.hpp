@@ -11,13 +11,13 @@
 namespace elastocal {
 
 struct ApproachOptions {
-  double height = kApproachHeight;  ///< from which a plate goes straight down to its table, m
-  double duration_s = 3;            ///< of the way down
+  /// Height from which a plate is moved straight down to its table, m.
+  double height = kApproachHeight;
+  double duration_s = 3;  ///< duration of the way down
 };
 
-/// The sets of a posture file of such a project: postures are held as they are, and those of a
-/// plate that has a table are approached from above, the plate in its attitude. Throws what FeetOf
-/// throws.
+/// The sets of a posture file for such a project. Postures are held exactly. Those of a plate that
+/// has a table are approached from above, with the plate in its final attitude. Throws as FeetOf.
 std::vector<PostureTour> TouchTours(const Project& project, const StandingRobot& robot,
                                     const std::vector<ChainPostures>& chains,
                                     const ApproachOptions& options, double rate_hz);

@@ -67,7 +67,7 @@ void WriteJoints(const VirtualExperiment& experiment, const RobotTree& described
   writer.yaml << YAML::EndMap;
 }
 
-/// Errors of rods, by the names of their parameters.
+/// Writes errors of rods, by the names of their parameters.
 void WriteRods(const TrueRobot& robot, TruthWriter& writer) {
   if (robot.described.linkages.empty()) return;
   writer.Key("rods");

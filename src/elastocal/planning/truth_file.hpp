@@ -8,14 +8,14 @@
 
 namespace elastocal {
 
-/// truth.yaml (docs/formats.md "Truth of a simulation"): what is true of the robot and of each
-/// trial's sensors. `trials` are those of the experiment that were played, and `sensors` what was
-/// drawn for each of them.
+/// Contents of truth.yaml (docs/formats.md "Truth of a simulation"): the truth about the robot and
+/// the sensors of each trial. `trials` are the indices of the trials that were played, and
+/// `sensors` what was drawn for each of them.
 std::string FormatTruth(const VirtualExperiment& experiment, const std::vector<std::size_t>& trials,
                         const std::vector<SensorTruth>& sensors);
 
-/// The same of an experiment whose truth is the error model: the parameters of the model that are
-/// not zero, by name, with value and unit (SI).
+/// As FormatTruth, for an experiment whose truth is the error model: its nonzero parameters by
+/// name, with value and unit (SI).
 std::string FormatMatchedTruth(const MatchedExperiment& experiment,
                                const std::vector<std::size_t>& trials,
                                const std::vector<SensorTruth>& sensors);

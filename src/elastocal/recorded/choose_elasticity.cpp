@@ -14,9 +14,9 @@ namespace {
 
 constexpr int kLeastPostures = 5;
 constexpr int kMostPostures = 300;
-constexpr double kLeastGain = 0.02;  // of the mean error
+constexpr double kLeastGain = 0.02;  // share of the mean error
 
-/// Evenly drawn, at most kMostPostures.
+/// At most kMostPostures postures, evenly chosen.
 Recording Sample(const Recording& recording) {
   const int all = recording.posture_count();
   if (all <= kMostPostures) return recording;

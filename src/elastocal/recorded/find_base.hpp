@@ -10,8 +10,8 @@
 
 namespace elastocal {
 
-/// Base parameters of a model of the project's robot that is to explain this recording (section
-/// 2.1). `seed` is taken instead of the project's: the base is the same by any.
+/// Base parameters of a model of the project's robot for this recording (section 2.1). `seed`
+/// replaces the project's; the base does not depend on it.
 BaseParameters FindBaseOf(const Project& project, const ErrorModel& model,
                           const Recording& recording, std::optional<std::uint64_t> seed = {});
 

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The recording with the markers of these names, in their order; those that it does not have are
-/// not seen. Postures in which none is seen are left out.
+/// The recording with the markers of these names, in this order; a marker that it lacks is not
+/// seen. Postures in which no marker is seen are left out.
 Recording WithMarkers(const Recording& recording, const std::vector<std::string>& names) {
   Recording selected = recording;
   selected.marker_names = names;
@@ -42,7 +42,7 @@ Recording WithMarkers(const Recording& recording, const std::vector<std::string>
   return SelectPostures(selected, postures);
 }
 
-/// A model has no position for a marker that the calibration never shows.
+/// Warns of markers that only trials for validation show, for which the model has no position.
 void WarnOfOtherMarkers(const std::vector<std::string>& known, const Recording& validation,
                         std::vector<std::string>& warnings) {
   std::string others;
@@ -54,7 +54,7 @@ void WarnOfOtherMarkers(const std::vector<std::string>& known, const Recording& 
   warnings.push_back("markers seen in trials for validation only, not judged: " + others);
 }
 
-/// True waists at the times of the postures, of trials that have a file of them.
+/// True poses of the waist at the times of the postures, for trials with a file of them.
 std::vector<std::optional<Transform>> TrueWaists(const std::vector<fs::path>& folders,
                                                  const Project& project,
                                                  const Recording& recording) {
@@ -79,8 +79,8 @@ std::vector<std::optional<Transform>> TrueWaists(const std::vector<fs::path>& fo
   return waists;
 }
 
-/// Trials follow on each other in their folder, not in the recordings for calibration and for
-/// validation.
+/// Number of a trial among all that were read. (In the recordings for calibration and for
+/// validation, trials do not follow each other as in their folder.)
 int NumberAmong(const std::vector<TrialSummary>& trials, const Trial& trial) {
   const auto found = std::ranges::find(
       trials, trial.name, [](const TrialSummary& summary) { return summary.trial.name; });
@@ -130,7 +130,7 @@ Measurements ReadFolders(const std::vector<fs::path>& folders, const Project& pr
   return measured;
 }
 
-/// A folder that is not a recording: says what would be one.
+/// Refuses a folder that is no recording, with a message about what was expected.
 void ExpectNoFolder(const fs::path& recording) {
   std::error_code error;
   if (!fs::is_directory(recording, error)) return;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kManySensors = 4;
 
-/// Joints whose limits leave them no motion: nothing can be identified there.
+/// Names joints whose limits leave them no motion, so that nothing can be identified there.
 std::string StuckJoints(const ErrorModel& model) {
   std::string names;
   for (int k : model.active_joints) {
@@ -48,7 +48,7 @@ void WarnOfLostRank(const ErrorModel& model, const IdentifiabilityOptions& optio
   }
 }
 
-/// Torque sensors that contradict statics are not used.
+/// Hides the torques of sensors that contradict statics.
 std::vector<ContradictoryTorque> CheckTorques(const ErrorModel& model,
                                               const CalibrationOptions& options,
                                               Measurements& measured) {
@@ -69,8 +69,8 @@ std::vector<ContradictoryTorque> CheckTorques(const ErrorModel& model,
   return found;
 }
 
-/// On two feet, and in trials that no leg ties to the floor, the markers on the root link are all
-/// that locates the waist; where the root is free, those of another body do as well.
+/// Warns of few markers on the root link. On two feet, and in trials that no leg ties to the floor,
+/// only these locate the waist; where the root is free, those of another body also do.
 void WarnOfFewWaistMarkers(const ErrorModel& model, bool free_root,
                            std::vector<std::string>& warnings) {
   if (TellPose(MarkersOnBody(model, 0))) return;
@@ -87,7 +87,8 @@ void WarnOfFewWaistMarkers(const ErrorModel& model, bool free_root,
                               count, count == 1 ? "" : "s", count < 3 ? "" : " lie on a line"));
 }
 
-/// Where the root is free, only what moves markers of one body against those of another shows.
+/// Checks that several bodies have markers. With a free root, only motions of one body's markers
+/// relative to another's show errors.
 void CheckFreeRoot(const ErrorModel& model, const Recording& recording) {
   for (const Marker& marker : model.markers) {
     const int first = model.tree.links[model.markers[0].link].body;

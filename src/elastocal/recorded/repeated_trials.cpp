@@ -25,7 +25,7 @@ std::vector<TrialRows> RowsOfTrials(const Recording& recording) {
 
 bool AreEqual(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
-/// Markers seen by the one alone may be those of another chain.
+/// Compares the markers that both have seen; others may belong to another chain.
 bool AreEqual(const Recording& a, const TrialRows& of_a, const Recording& b,
               const TrialRows& of_b) {
   const int count = of_a.second - of_a.first;

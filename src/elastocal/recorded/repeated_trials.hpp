@@ -8,11 +8,11 @@
 
 namespace elastocal {
 
-/// Trials that are the same recording as another one, number for number: copied, or listed under
-/// two names.
+/// Trials with exactly the same numbers as another one: copied, or listed under two names.
 struct RepeatedTrials {
-  std::vector<std::string> estimated_twice;      ///< both for calibration, in words
-  std::vector<std::string> judged_by_estimated;  ///< for validation what the estimate has used
+  std::vector<std::string> estimated_twice;  ///< pairs of trials for calibration, in words
+  /// Trials for validation that the estimate has also used, in words.
+  std::vector<std::string> judged_by_estimated;
 };
 
 RepeatedTrials FindRepeatedTrials(const Measurements& measured);

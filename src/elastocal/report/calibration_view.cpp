@@ -75,7 +75,7 @@ Json SignalJson(const TrialSummary& trial) {
   return json;
 }
 
-/// Trials for calibration first: they are what the estimate rests on.
+/// Trials for calibration come first, because the estimate rests on them.
 Json SignalsJson(const std::vector<TrialSummary>& trials) {
   Json json = Json::array();
   for (const bool calibration : {true, false}) {
@@ -88,7 +88,7 @@ Json SignalsJson(const std::vector<TrialSummary>& trials) {
   return json;
 }
 
-/// Robot, chains, spheres and workspaces.
+/// Adds robot, chains, spheres and workspaces.
 void AddRobot(const RobotView& view, Json& json) {
   json["robot"] = RobotJson(view);
   json["chains"] = Json::array();
@@ -109,7 +109,7 @@ void AddRobot(const RobotView& view, Json& json) {
   }
 }
 
-/// What the project says of the robot, where nothing was measured.
+/// What the project says about the robot, for folders without measurements.
 Json ProjectJson(const RobotView& view) {
   Json json = {{"rest", std::vector<double>(view.rest.begin(), view.rest.end())},
                {"markers", Json::array()},

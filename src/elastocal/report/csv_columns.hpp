@@ -7,9 +7,9 @@
 
 namespace elastocal {
 
-/// Columns of a table by name: arrays of numbers (null for empty cells), or of texts where a cell
-/// is no number. At most `most_rows` rows are taken, evenly and always the last one; `rows` tells
-/// how many there were. Throws InputError naming `file` and the line: what Table refuses.
+/// Columns of a table by name: arrays of numbers (null for empty cells), or of texts if a cell is
+/// no number. At most `most_rows` rows are taken, evenly chosen and always with the last one;
+/// `rows` receives the number of all rows. Throws InputError that names `file` and line, as Table.
 nlohmann::ordered_json ReadCsvColumns(const std::string& file, const std::string& text,
                                       std::size_t most_rows, std::size_t& rows);
 

@@ -21,7 +21,7 @@ void AppendFloat(double value, std::string& bytes) {
     bytes += static_cast<char>(bits >> shift & 0xffU);
 }
 
-/// A checksum that is computed piece by piece.
+/// Checksum that is computed piece by piece.
 class Digest {
  public:
   Digest() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {

@@ -10,21 +10,21 @@
 
 namespace elastocal {
 
-/// SHA-256 of bytes as 64 hexadecimal digits: tells whether an input is the same file.
+/// SHA-256 of bytes as 64 hexadecimal digits, by which files are compared.
 std::string Sha256(std::string_view bytes);
 
-/// The same of what a stream still holds, whose length is added to `count`; read piece by piece.
+/// SHA-256 of the rest of a stream, read piece by piece; its length is added to `count`.
 std::string Sha256(std::istream& stream, std::size_t& count);
 
 /// Base64 (RFC 4648, with padding) of bytes.
 std::string Base64(std::string_view bytes);
 
-/// Numbers as 32-bit floats, little-endian, in base64: what the page reads long series from.
+/// Numbers as 32-bit floats, little-endian, in base64, from which the page reads long series.
 /// Matrices row by row; NaN stays NaN.
 std::string Base64Floats(const std::vector<double>& values);
 std::string Base64Floats(const Eigen::MatrixXd& values);
 
-/// A number with `digits` significant ones: what is beyond is not worth its place in a file.
+/// A number rounded to `digits` significant digits, which keeps files small.
 double Rounded(double value, int digits = 5);
 
 }  // namespace elastocal

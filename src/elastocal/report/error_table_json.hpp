@@ -7,11 +7,11 @@
 
 namespace elastocal {
 
-/// A kind of trial as Table 2 of the paper abbreviates it: SW sinusoidal motions, RP random
+/// Abbreviation of a kind of trial in Table 2 of the paper: SW sinusoidal motions, RP random
 /// postures, RM repeatability motion.
 const char* ErrorTableCase(TrialKind kind);
 
-/// Table 2 of the paper for programs, mm; docs/formats.md.
+/// Table 2 of the paper as JSON, mm (docs/formats.md).
 nlohmann::ordered_json MakeErrorTableJson(const ErrorTable& table);
 
 }  // namespace elastocal

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 }  // namespace
 
 Json ParseJsonObject(const std::string& source, const std::string& text) {
-  // Copies and text of a value are made by recursion, so that deep ones would exhaust the stack.
+  // Values are copied and written by recursion, so that deep nesting would exhaust the stack.
   constexpr int kDeepest = 100;
   const auto check_depth = [&](int depth, Json::parse_event_t, const Json&) {
     if (depth <= kDeepest) return true;

@@ -7,9 +7,9 @@
 
 namespace elastocal {
 
-/// The JSON object in the text of a file; `source` names it in messages. All JSON is read here.
-/// Throws InputError: no JSON, numbers that no double holds, nesting beyond 100 levels, another
-/// value than an object.
+/// Parses the JSON object in the text of a file; `source` names it in messages. All JSON is read by
+/// this function. Throws InputError for text that is no JSON, numbers that no double holds, nesting
+/// beyond 100 levels, and another value than an object.
 nlohmann::ordered_json ParseJsonObject(const std::string& source, const std::string& text);
 
 }  // namespace elastocal

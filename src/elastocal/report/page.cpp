@@ -44,7 +44,7 @@ Json CalibrationJson(const LabelledCalibration& calibration) {
   return json;
 }
 
-/// Coefficients in hundredths, one byte each: the lower triangle row by row.
+/// Correlation coefficients in hundredths, one byte each: the lower triangle, row by row.
 Json CorrelationJson(const CalibrationEstimate& estimate) {
   const Eigen::MatrixXd& covariance = estimate.covariance;
   std::string lower;
@@ -58,7 +58,7 @@ Json CorrelationJson(const CalibrationEstimate& estimate) {
   return {{"names", estimate.covariance_names}, {"lower", Base64(lower)}};
 }
 
-/// A file of the folder, for messages.
+/// Path of a file of the folder, for messages.
 std::string PathOf(const ReportSources& sources, const std::string& name) {
   return (std::filesystem::path(sources.folder) / name).string();
 }
@@ -98,7 +98,7 @@ bool IsOutdated(const ReportSources& sources, const std::string& name) {
          sources.outdated.end();
 }
 
-/// What the page lacks, and the command that makes it.
+/// What the page lacks, with the command that makes it.
 Json MissingJson(const Json& report, const ReportSources& sources) {
   const std::string& folder = sources.folder;
   Json missing = Json::array();
@@ -201,7 +201,7 @@ std::string MakePage(std::string_view page_template, const std::string& json) {
   std::string page(page_template.substr(0, place));
   page.reserve(page_template.size() + json.size());
   for (const char c : json) {
-    // Only inside of strings can these be: "</script>" would end the element.
+    // These occur only inside strings: "</script>" would close the element.
     if (c == '<') {
       page += "\\u003c";
     } else {

@@ -16,31 +16,32 @@ struct LabelledCalibration {
   CalibrationEstimate estimate;
 };
 
-/// What a page is made of.
+/// Data from which a page is made.
 struct ReportSources {
-  std::string folder;                             ///< its name, as the user gave it
-  std::string version;                            ///< of the program
-  std::map<std::string, std::string> files;       ///< texts of ReportFiles, by their names
-  std::vector<LabelledCalibration> calibrations;  ///< in the order of time; this folder's one last
-  std::vector<std::string> outdated = {};  ///< files that are not shown: of another calibration
+  std::string folder;                        ///< name of the folder as given by the user
+  std::string version;                       ///< version of the program
+  std::map<std::string, std::string> files;  ///< contents of ReportFiles, by name
+  /// In order of time; that of this folder is the last.
+  std::vector<LabelledCalibration> calibrations;
+  std::vector<std::string> outdated = {};  ///< files of another calibration, which are not shown
 };
 
-/// Those of the files of a folder, by name, that a page shows: summary.json, report_data.json,
-/// robot_data.json, validation.json, comparison.json, deployment.json, diagnosis.json,
-/// runs.json; what design writes (`*_curves.csv`, `*_summary.json`) and plan (motion.csv, or X.csv
-/// beside X_margins.json).
+/// Those of the given file names whose contents a page shows: summary.json, report_data.json,
+/// robot_data.json, validation.json, comparison.json, deployment.json, diagnosis.json, runs.json;
+/// files by design (`*_curves.csv`, `*_summary.json`) and by plan (motion.csv, or X.csv beside
+/// X_margins.json).
 std::vector<std::string> ReportFiles(const std::vector<std::string>& names);
 
-/// The data of a page, as docs/formats.md has it under "report.html": everything that the files
-/// tell, motions thinned, and what is missing with the command that makes it. Throws InputError
-/// naming a file that cannot be read.
+/// The data of a page, described in docs/formats.md under "report.html": everything in the files,
+/// with motions thinned, and what is missing, with the command that makes it. Throws InputError
+/// that names a file which cannot be read.
 std::string MakeReportJson(const ReportSources& sources);
 
-/// The page: the template with these data in it. No text in them can end the script element that
-/// holds them.
+/// The page: the template with these data in it. No text in the data can close the script element
+/// that holds them.
 std::string MakePage(std::string_view page_template, const std::string& json);
 
-/// The template that the program was built with: one HTML file that needs nothing else. Empty where
+/// The template that the program was built with: one HTML file without dependencies. Empty where
 /// the build had no Node.js.
 std::string_view PageTemplate();
 

@@ -16,11 +16,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kBins = 50;
 constexpr int kMostMoments = 400;
-constexpr double kShownShare = 0.995;  // of the distances of the worst model
+constexpr double kShownShare = 0.995;  // share of the distances of the worst model
 
 using Mask = ObservationMask;
 
-/// Distances of every model with the observations that count, the same for all.
+/// Distances of every model, with the observations that count, the same for all models.
 struct Distances {
   const Recording& recording;
   const ByModel<Prediction>& predictions;
@@ -58,7 +58,8 @@ std::vector<double> Collect(const Distances& distances, ModelKind kind,
   return collected;
 }
 
-/// A bin width of one, two or five in some decade, so that kBins reach `end` or nearly.
+/// A bin width of one, two or five times a power of ten, with which kBins bins reach `end` or
+/// nearly.
 double NiceWidth(double end) {
   const double width = std::max(end, 1e-9) / kBins;
   const double decade = std::pow(10.0, std::floor(std::log10(width)));
@@ -121,7 +122,7 @@ Json ClusterRmse(const ClusterView& cluster, const CalibrationView& view,
   return json;
 }
 
-/// Root mean square of a row over the observations that count, mm; null for none.
+/// Root mean square of a row over the observations that count, mm; null if there is none.
 Json RowRms(const Eigen::MatrixXd& distances, const Mask& counts, int row) {
   double squares = 0.0;
   int count = 0;

@@ -38,7 +38,7 @@ std::vector<InputRecord> RecordInputs(const std::vector<std::filesystem::path>& 
       std::string sum = Sha256(stream, bytes);
       records.push_back({file.string(), bytes, std::move(sum)});
     } catch (const InputError&) {
-      continue;  // what cannot be read was not used either
+      continue;  // a file that cannot be read was not used
     }
   }
   return records;
@@ -64,7 +64,7 @@ std::string UpdateRuns(const std::string& runs, const RunRecord& record) {
   try {
     json = ParseJsonObject("runs.json", runs);
   } catch (const InputError&) {
-    // Records that cannot be read are no reason to lose a result.
+    // The new result is kept even if the old records cannot be read.
   }
   Json item = {{"command_line", record.command_line},
                {"folder", record.folder},

@@ -16,16 +16,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kMostPlayedMoments = 150;  // of a motion
+constexpr int kMostPlayedMoments = 150;  // moments of a motion
 constexpr int kMostPostures = 300;
 
-/// A recording with what the models say of it.
+/// A recording with the predictions of the models.
 struct Predicted {
   const Recording& recording;
   const ByModel<Prediction>& predictions;
 };
 
-/// At most `most` of them, evenly.
+/// At most `most` postures, evenly chosen.
 std::vector<int> Thinned(const std::vector<int>& postures, int most) {
   const auto count = static_cast<int>(postures.size());
   if (count <= most) return postures;
@@ -44,8 +44,8 @@ std::vector<int> MarkersSeen(const Recording& recording, const std::vector<int>&
   return markers;
 }
 
-/// From the frame of the recording to one with z up: by gravity where the waist moves, else that of
-/// the waist.
+/// Transform from the frame of the recording to one with z up: by gravity where the waist moves,
+/// else that of the waist.
 Transform ToView(const CalibrationView& view) {
   const CalibrationResult& best = view.comparison.largest();
   if (!HasPoseByPosture(view.recording)) {

@@ -7,9 +7,9 @@
 
 namespace elastocal {
 
-/// What the 3-D view plays, one entry a trial (a table of postures: one in all), in a frame with z
-/// up: postures, where the robot stood, measured markers, and those predicted by the uncalibrated
-/// and by the best model.
+/// What the 3-D view plays: one entry for each trial (a posture table is one), in a frame with z
+/// up. It contains postures, poses of the waist, measured markers, and those predicted by the
+/// uncalibrated and by the best model.
 nlohmann::ordered_json MakeScenes(const CalibrationView& view);
 
 }  // namespace elastocal

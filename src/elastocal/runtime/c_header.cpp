@@ -75,7 +75,7 @@ std::string UpperName(const std::string& name) {
   return upper;
 }
 
-/// The names in C of these, all different; that of their number is taken.
+/// Unique names in C for these names; `NAME_COUNT` is reserved.
 std::vector<std::string> UpperNames(const std::vector<std::string>& names) {
   std::set<std::string> taken{"COUNT"};
   std::vector<std::string> upper;
@@ -89,13 +89,13 @@ std::vector<std::string> UpperNames(const std::vector<std::string>& names) {
   return upper;
 }
 
-/// A comment may not end early.
+/// Makes a text safe inside a comment.
 std::string CommentText(std::string text) {
   for (std::size_t at = 0; (at = text.find("*/", at)) != std::string::npos;) text[at] = ' ';
   return text;
 }
 
-/// One header in the making.
+/// Writes one header.
 class CHeaderWriter {
  public:
   CHeaderWriter(const Compensator& robot, const CHeaderOptions& options)
@@ -182,7 +182,7 @@ class CHeaderWriter {
     Table("ec_joint", "nominal", model_.nominal, JointText);
     Table("ec_joint", "calibrated", model_.calibrated, JointText, &model_.joint_names);
     Table("ec_frame", "link", model_.links, FrameText);
-    // An empty list has one entry, which nothing reads.
+    // An empty list gets one entry, which is never read.
     std::vector<ec_foot> feet = model_.feet;
     std::vector<std::string> names = model_.foot_names;
     if (feet.empty()) {
@@ -227,7 +227,7 @@ class CHeaderWriter {
          << "};\n\n";
   }
 
-  /// An array of the working memory, as ec_memory names it.
+  /// An array of the working memory, by its name in ec_memory.
   struct MemoryArray {
     const char* type;
     const char* name;

@@ -14,7 +14,7 @@ namespace {
 
 using Vector = Eigen::Ref<const Eigen::VectorXd>;
 
-/// One store for arrays of these lengths, with a pointer to each.
+/// Allocates one store for arrays of these lengths, and sets a pointer to each.
 template <typename Store, typename Parts>
 void HandOut(Store& store, const Parts& parts) {
   std::size_t size = 0;

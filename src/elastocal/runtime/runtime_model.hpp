@@ -10,28 +10,29 @@
 
 namespace elastocal {
 
-/// A calibrated robot as numbers: all that is needed at run time, and nothing else. SI units. It is
-/// made from a project and a calibration (exports/runtime_robot.hpp) and kept in a file that a
-/// controller reads without any other library.
+/// A calibrated robot as numbers, in SI units: all that is needed at run time, and nothing else. It
+/// is made from a project and a calibration (exports/runtime_robot.hpp) and stored in a file that a
+/// controller reads without other libraries.
 ///
-/// Bodies are those of the URDF with fixed links joined: body 0 is the root link's, joint k moves
-/// body k + 1. A coordinate is an entry of the position vector; joints that mimic another share its
-/// coordinate.
+/// Bodies are those of the URDF with fixed links joined: body 0 is that of the root link, and joint
+/// k moves body k + 1. A coordinate is an entry of the position vector; joints that mimic another
+/// share its coordinate.
 struct RuntimeModel {
   std::string robot;        ///< name in the URDF
-  std::string calibration;  ///< where the errors come from, for people
-  std::string fingerprint;  ///< of the nominal robot (NominalFingerprint in io/fingerprint.hpp)
+  std::string calibration;  ///< origin of the errors, for the user
+  /// Fingerprint of the nominal robot (NominalFingerprint in io/fingerprint.hpp)
+  std::string fingerprint;
   std::vector<std::string> joint_names, coordinate_names, link_names, foot_names, tip_names;
   std::vector<ec_joint> nominal, calibrated;  ///< by joint
-  std::vector<double> mass, moment;           ///< by body; three moments a body
-  std::vector<int> leg_of_body;               ///< by body: index of a foot, or -1
+  std::vector<double> mass, moment;           ///< by body; three first moments for each body
+  std::vector<int> leg_of_body;               ///< by body: index of the leg's foot, or -1
   std::vector<ec_frame> links;
   std::vector<ec_foot> feet;  ///< at most 32
   std::vector<ec_tip> tips;
-  std::vector<ec_shift> shifts;      ///< of positions of the calibrated joints
+  std::vector<ec_shift> shifts;      ///< displacements of the calibrated joints' positions
   std::vector<double> lower, upper;  ///< by coordinate
-  /// In the root link's frame where that is held, m/s^2: how it hung or stood when the robot was
-  /// calibrated. A robot on its feet takes the floor as level.
+  /// Gravity in the root link's frame, if that is held, m/s^2: as the robot hung or stood when it
+  /// was calibrated. For a robot on its feet, the floor counts as level.
   std::vector<double> gravity = {0.0, 0.0, -9.81};
   std::vector<double> suspension = std::vector<double>(12);  ///< see ec_robot
 
@@ -40,17 +41,17 @@ struct RuntimeModel {
   int foot_count() const { return static_cast<int>(feet.size()); }
 };
 
-/// The groups of coordinates that move common tips: what ec_robot needs beside RuntimeModel.
+/// Groups of coordinates that move common tips, which ec_robot needs beside RuntimeModel.
 struct RuntimeBranches {
   std::vector<int> branch_of_coordinate, column_of_coordinate, branch_size;
 };
 
-/// Sets the branch of each tip (the joint at the root that carries it) and finds the coordinates of
-/// each branch.
+/// Sets the branch of each tip (the joint at the root that carries it), and finds the coordinates
+/// of each branch.
 RuntimeBranches FindBranches(RuntimeModel& model);
 
-/// Writes and reads the file of a model. Reading throws std::runtime_error naming the file, the
-/// entry, what was found and what was expected; also for a model whose indices or sizes do not fit
+/// Write and read the file of a model. Reading throws std::runtime_error that names file, entry,
+/// what was found and what was expected, also for a model whose indices or sizes do not fit
 /// together, or with numbers that are not finite (limits may be infinite).
 void WriteRuntimeModel(const RuntimeModel& model, std::ostream& out);
 RuntimeModel ReadRuntimeModel(std::istream& in, const std::string& source);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kKind = "elastocal-runtime-model ";
 constexpr int kFormat = 5;
-constexpr int kMost = 10000;  // entries of a list: a robot has some dozens
+constexpr int kMost = 10000;  // entries of a list; a robot has some dozens
 
 // One description of the file serves both directions: `archive(name, value)` writes a line, or
 // reads it and checks the name.
@@ -97,7 +97,7 @@ class Reader {
     if (!(in_ >> value)) Fail("the end of the file", "a value");
   }
 
-  /// The rest of the line: a name may have blanks in it.
+  /// Reads the rest of the line, because a name may contain blanks.
   void Name(std::string& name) {
     if (!std::getline(in_ >> std::ws, name)) Fail("the end of the file", "a name");
     while (!name.empty() && name.back() == '\r') name.pop_back();

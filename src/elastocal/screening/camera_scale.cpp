@@ -15,24 +15,24 @@ namespace {
 
 constexpr double kLeastScale = 3e-3;
 constexpr double kFalseAlarm = 1e-3;  // probability that a clean recording is accused
-// Times the prior of lengths: as widely do they scatter at least, where many tell how widely (of
-// whatever robot), and where some do; fewer tell nothing of it.
+// Smallest width of the lengths' scatter, relative to the prior, where many lengths determine the
+// width and where some do. Fewer lengths do not determine it.
 constexpr double kNarrowestPrior = 0.6, kNarrowestOfSome = 0.4;
 constexpr Eigen::Index kManyLengths = 20;
-constexpr double kSomeLengths = 8.0;  // that the recording determines
+constexpr double kSomeLengths = 8.0;  // number of lengths that the recording determines
 constexpr int kRounds = 10;
 constexpr int kFewestLengths = 4;
-constexpr double kLeastLength = 0.02;  // m: shorter ones tell nothing of a scale
+constexpr double kLeastLength = 0.02;  // m: shorter lengths tell nothing about a scale
 
-/// What a length of a joint changes by where the joint is displaced by `move`, m: for a general
-/// joint a displacement in its constant frame, of which r, d and b are the directions -y, x and z.
+/// Change of a length of a joint by a displacement `move` of the joint, m. For a general joint the
+/// displacement is in its constant frame, in which r, d and b have the directions -y, x and z.
 double GeneralLength(const Eigen::Vector3d& move, ParameterKind kind) {
   if (kind == ParameterKind::kR) return -move.y();
   if (kind == ParameterKind::kD) return move.x();
   return move.z();
 }
 
-/// What a length of a joint changes by where the robot is larger by one, m.
+/// Change of a length of a joint if the whole robot is larger by a factor of one (doubled), m.
 double NominalLength(const JointPlacement& placement, ParameterKind kind) {
   const Transform& T = placement.T_parent_pre;
   if (placement.general) return GeneralLength(T.linear().transpose() * T.translation(), kind);
@@ -40,9 +40,10 @@ double NominalLength(const JointPlacement& placement, ParameterKind kind) {
   return kind == ParameterKind::kD ? placement.d : placement.b;
 }
 
-/// By how much the lengths change when the common normal between a joint's axis and the one that
-/// continues the chain is moved by one along both: the frame of the first joint moves with it, and
-/// all that the joint carries has to be moved back. `lengths`: indices of the model's parameters.
+/// Changes of the lengths when the common normal between a joint's axis and the axis that continues
+/// the chain is displaced by one along both. The frame of the first joint moves with the normal,
+/// and all that the joint carries has to be moved back. `lengths` holds indices of the model's
+/// parameters.
 Eigen::VectorXd ShiftOfNormal(const ErrorModel& model, const std::vector<int>& lengths, int joint,
                               int next) {
   Eigen::VectorXd shift = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(lengths.size()));
@@ -61,14 +62,15 @@ Eigen::VectorXd ShiftOfNormal(const ErrorModel& model, const std::vector<int>& l
   return shift;
 }
 
-/// Covariance of the lengths' own errors beside those of one variance, in that variance: the common
-/// normal of two axes that are inclined a little to each other is far away, and errors of the axes'
-/// places and directions move it along both by the more, the less they are inclined.
+/// Covariance of the lengths' single errors in addition to independent errors of one variance, in
+/// units of that variance. The common normal of two axes at a small angle is far away, and errors
+/// of the axes' positions and directions move it along both axes the more, the smaller the angle
+/// is.
 Eigen::MatrixXd ShiftsOfNormals(const ErrorModel& model, const std::vector<int>& lengths,
                                 const Eigen::VectorXd& prior_sd) {
   const auto count = static_cast<Eigen::Index>(lengths.size());
   Eigen::MatrixXd shifts = Eigen::MatrixXd::Zero(count, count);
-  const double unit = prior_sd[lengths.front()];  // that of all lengths
+  const double unit = prior_sd[lengths.front()];  // the prior is the same for all lengths
   for (std::size_t p = 0; p < model.parameters.size(); ++p) {
     const Parameter& twist = model.parameters[p];
     if (twist.kind != ParameterKind::kAlpha || twist.joint < 0) continue;
@@ -84,16 +86,16 @@ Eigen::MatrixXd ShiftsOfNormals(const ErrorModel& model, const std::vector<int>&
   return shifts;
 }
 
-/// What the data tell of the lengths of the joints, in units of their prior, all else being
-/// eliminated.
+/// Information of the data about the joints' lengths, in units of their prior, after all other
+/// parameters are eliminated.
 struct KnownLengths {
-  std::vector<int> parameters;  ///< of the model
-  Eigen::MatrixXd information;  ///< of the data alone, as the rest
+  std::vector<int> parameters;  ///< indices in the model
+  Eigen::MatrixXd information;  ///< of the data alone, as is `b`
   Eigen::VectorXd b;            ///< information times the estimate
-  Eigen::VectorXd pattern;      ///< of a robot that is larger by one
+  Eigen::VectorXd pattern;  ///< changes of the lengths if the robot is larger by a factor of one
 };
 
-/// Nothing where too few lengths could tell a scale.
+/// Nothing where too few lengths could determine a scale.
 std::optional<KnownLengths> LengthsOf(const CalibrationResult& result) {
   const ErrorModel& model = result.model;
   const std::vector<int>& fitted = result.posterior.parameters;
@@ -120,7 +122,8 @@ std::optional<KnownLengths> LengthsOf(const CalibrationResult& result) {
   const Eigen::VectorXd x = result.delta(fitted).cwiseQuotient(unit);
   Eigen::MatrixXd A = unit.asDiagonal() * result.posterior.data_information * unit.asDiagonal();
   const Eigen::VectorXd b = A * x + x;  // of the data alone
-  // All but the lengths have their own prior, whatever that of the lengths, and are eliminated.
+  // All parameters but the lengths keep their own prior, whatever that of the lengths is, and are
+  // eliminated.
   A.diagonal() += Eigen::VectorXd::Ones(count);
   const Eigen::MatrixXd across = A(others, lengths);
   Eigen::MatrixXd both(across.rows(), across.cols() + 1);
@@ -134,10 +137,10 @@ std::optional<KnownLengths> LengthsOf(const CalibrationResult& result) {
   return known;
 }
 
-/// The scale beside lengths of a prior as wide as they ask for: the prior was widened with the
-/// pattern in it, and small robots and industrial arms are made more exactly than it expects. A
-/// width of `first` is that of the prior as it was before; `own_weight` is the prior's weight for a
-/// width of one. Nothing where the lengths tell no scale.
+/// Estimates the scale together with the width of the lengths' prior. (The prior was widened with
+/// the pattern in it; small robots and industrial arms are made more exactly than it expects.)
+/// `first` is the width of the prior before it was widened; `own_weight` is the weight of the prior
+/// for a width of one. Nothing where the lengths do not determine a scale.
 std::optional<CommonScale> ScaleBeside(const KnownLengths& lengths,
                                        const Eigen::MatrixXd& own_weight, double first) {
   const Eigen::Index count = lengths.pattern.size();
@@ -162,7 +165,7 @@ std::optional<CommonScale> ScaleBeside(const KnownLengths& lengths,
     double narrowest = count >= kManyLengths ? kNarrowestPrior * first : first;
     if (count < kManyLengths && determined >= kSomeLengths) {
       narrowest = kNarrowestOfSome * first;
-      scale.degrees_of_freedom -= 1.0;  // the scale's own
+      scale.degrees_of_freedom -= 1.0;  // one is the scale's own
     }
     width = std::max(narrowest, width * std::sqrt(squares / determined));
   }

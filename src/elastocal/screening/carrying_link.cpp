@@ -15,7 +15,7 @@ namespace {
 constexpr double kLeastScatter = 0.02;  // m
 constexpr double kLeftOnCarrier = 1.0 / 3.0;
 constexpr double kRounding = 1e-9;
-constexpr std::size_t kMostLookedAt = 60;  // postures
+constexpr std::size_t kMostLookedAt = 60;  // postures that are examined
 constexpr std::size_t kFewestTelling = 8;
 
 /// Positions of one marker in the frame of one link, m.
@@ -29,7 +29,7 @@ double SquaredScatter(const PositionsOnLink& positions) {
   return squares;
 }
 
-/// The nominal robot in some postures of a recording, with its links in the root link's frame.
+/// The nominal robot in some postures of a recording, with all links in the root link's frame.
 class NominalLinks {
  public:
   NominalLinks(const ErrorModel& model, const Recording& recording)
@@ -39,8 +39,8 @@ class NominalLinks {
     }
   }
 
-  /// rms distance of a cluster's markers from their mean positions on each link, m; empty where too
-  /// few postures tell.
+  /// Root mean square distance of a cluster's markers from their mean positions in the frame of
+  /// each link, m. Empty where too few postures show them.
   Eigen::ArrayXd ScatterOf(const std::vector<int>& markers) const {
     std::vector<std::optional<Transform>> roots;
     for (const NominalPosture& nominal : postures_) {
@@ -86,7 +86,7 @@ std::optional<CarryingLink> FindCarryingLink(const ErrorModel& model, const Reco
     const Eigen::ArrayXd scatter = robot.ScatterOf(cluster.markers);
     const int own = model.markers[Size(cluster.markers.front())].link;
     if (scatter.size() <= own || scatter[own] < kLeastScatter) continue;
-    int carrier = -1;  // of a body's links the first, which its joint moves
+    int carrier = -1;  // the first link of a body, which its joint moves
     double least = kLeftOnCarrier * scatter[own];
     for (int link = 0; link < scatter.size(); ++link) {
       if (!(scatter[link] < (1.0 - kRounding) * least)) continue;

@@ -11,22 +11,26 @@
 
 namespace elastocal {
 
-/// A cluster that moves with another link than that of the project.
+/// A cluster whose markers move with another link than the project says.
 struct CarryingLink {
-  std::string cluster, own, carrier;  ///< the links' names
-  double on_own = 0.0;  ///< rms distance of its markers from their mean positions there, m
+  /// Name of the cluster, of its link in the project, and of the link with which it moves.
+  std::string cluster, own, carrier;
+  /// Rms distance of its markers from their mean positions in the frame of `own`, m.
+  double on_own = 0.0;
+  /// The same in the frame of `carrier`, m.
   double on_carrier = 0.0;
 };
 
-/// The cluster whose markers, seen from another link of the nominal robot, scatter by a third at
-/// most of what they do on their own one, where that is at least 20 mm. The root link is placed by
-/// the other clusters, in postures in which three of their markers are seen. None where that is so
-/// of several clusters: a joint's positions are wrong then.
+/// Finds the cluster of two markers or more whose positions scatter by at least 20 mm in the frame
+/// of their own link, and by at most a third of that in the frame of another link of the nominal
+/// robot. The root link is placed by the other clusters, in postures in which three of their
+/// markers are seen. Nothing where several clusters meet this rule: then a joint's positions are
+/// wrong.
 std::optional<CarryingLink> FindCarryingLink(const ErrorModel& model, const Recording& recording,
                                              const std::vector<LabelCluster>& clusters);
 
-/// "cluster FOREARM: its markers move with upper_arm (3.14 mm rms), not with forearm (85.1 mm rms):
-/// on which link are they?"
+/// Text such as "cluster FOREARM: its markers move with upper_arm (3.14 mm rms), not with forearm
+/// (85.1 mm rms): on which link are they?".
 std::string Describe(const CarryingLink& found);
 
 }  // namespace elastocal

@@ -18,23 +18,24 @@ constexpr double kCoarseStep = 0.499 * M_PI / 180.0, kCoarseSlide = 0.999e-3;
 constexpr double kLeftWithoutSteps = 0.8;
 constexpr double kTimesChance = 3.0, kMostByChance = 0.8;
 constexpr double kLeastOfRounding = 0.5;
-constexpr double kMostOfStep = 0.6;  // that a position is moved
-constexpr int kSweeps = 3;           // over the joints
+constexpr double kMostOfStep = 0.6;  // share of a step by which a position may be moved
+constexpr int kSweeps = 3;           // rounds over all joints
 constexpr double kScatter = 0.25 * M_PI / 180.0, kScatterSlide = 1e-3;
 constexpr double kLeftWithoutScatter = 0.5;
 constexpr double kLoose = 0.5 * M_PI / 180.0, kLooseSlide = 2e-3, kLeftWithoutLoose = 0.4;
-constexpr double kOfMedian = 1.4826;  // a normal deviation's sd over its median size
-constexpr int kSteps = 2;             // of Newton's method
-constexpr double kShown = 0.1;        // of the largest displacement
+// Ratio of a normal deviation's standard deviation to its median size.
+constexpr double kOfMedian = 1.4826;
+constexpr int kSteps = 2;       // steps of Newton's method
+constexpr double kShown = 0.1;  // share of the largest displacement
 constexpr std::size_t kFewestShown = 5;
 
 bool IsSliding(const RobotTree& tree, int coordinate) {
   return JointOfCoordinate(tree, coordinate).type == JointType::kPrismatic;
 }
 
-/// A joint is shown in postures whose markers it moves by a tenth or more of how far it moves those
-/// of any posture. With what it carries out of sight, it still changes the loads that deflect other
-/// links, and that does not tell where it is.
+/// The curvature from which a joint is shown in a posture: its markers move by at least a tenth of
+/// their largest displacement over all postures. A joint that carries nothing in sight still
+/// changes the loads that deflect other links, but this does not determine its position.
 double LeastCurvature(const DistanceParabola& parabola) {
   return kShown * kShown * std::max(0.0, parabola.Curvature().maxCoeff());
 }
@@ -43,12 +44,13 @@ Eigen::ArrayXd ToLeast(const DistanceParabola& parabola) {
   return parabola.ToLeast(LeastCurvature(parabola));
 }
 
-/// By posture: 1 where the joint is shown, else 0.
+/// For each posture: 1 where the joint is shown, else 0.
 Eigen::ArrayXd Shown(const DistanceParabola& parabola) {
   return (parabola.Curvature() > LeastCurvature(parabola)).cast<double>();
 }
 
-/// By the median size of what is shown; 0 where that is in few postures.
+/// Standard deviation by the median size, over the postures where the joint is shown; 0 if these
+/// are few.
 double SdOfShown(const Eigen::VectorXd& moved, const Eigen::ArrayXd& shown) {
   std::vector<double> sizes;
   for (Eigen::Index i = 0; i < moved.size(); ++i) {
@@ -57,8 +59,8 @@ double SdOfShown(const Eigen::VectorXd& moved, const Eigen::ArrayXd& shown) {
   return sizes.size() < kFewestShown ? 0.0 : kOfMedian * Median(sizes);
 }
 
-/// Without what a joint is off by throughout a trial (by the median of what is shown there): that
-/// is no scatter.
+/// Subtracts what a joint is off by throughout a trial (the median over postures where it is
+/// shown), which is no scatter.
 Eigen::VectorXd AboutTrials(Eigen::VectorXd moved, const Eigen::ArrayXd& shown,
                             const Recording& recording) {
   for (int trial = 0; trial < static_cast<int>(recording.trials.size()); ++trial) {
@@ -101,7 +103,8 @@ std::vector<CoarsePositions> FindCoarsePositions(const CalibrationResult& result
   }
   const auto joints = static_cast<int>(coarse.size());
   const int coordinates = 3 * recording.marker_count();
-  const double chance = kTimesChance * joints / std::max(1, coordinates);  // free numbers fit noise
+  // So many free numbers fit noise.
+  const double chance = kTimesChance * joints / std::max(1, coordinates);
   if (joints == 0 || chance > kMostByChance) return {};
   Recording moved = recording;
   const Eigen::VectorXd given = SquaresByPosture(result, recording, options);

@@ -14,12 +14,14 @@
 namespace elastocal {
 namespace {
 
-constexpr int kLeastPostures = 3;    // on either side
-constexpr double kLargestSd = 5e-4;  // m, of a displacement that is believed
-constexpr int kAtAChange = 3;        // postures of a change of feet
-constexpr double kLeastLeft = 0.05;  // there, of what is known of a displacement
+constexpr int kLeastPostures = 3;    // postures on either side
+constexpr double kLargestSd = 5e-4;  // m: largest standard deviation of a displacement that counts
+constexpr int kAtAChange = 3;        // postures near a change of feet
+// Share of the information about a displacement that must be left there.
+constexpr double kLeastLeft = 0.05;
 
-/// What a displacement of one cluster, in the axes of its link, does in one posture.
+/// Contribution of one posture to the score test of a cluster's displacement, in the axes of its
+/// link.
 struct ShiftEffect {
   Eigen::Vector3d score = Eigen::Vector3d::Zero();        ///< A' Q r
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< A' Q A
@@ -27,20 +29,20 @@ struct ShiftEffect {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();        ///< mean over its markers, m
 };
 
-/// Of one cluster, by posture in which it was seen.
+/// Contributions for one cluster, by posture in which it was seen.
 using ShiftEffects = std::map<int, ShiftEffect>;
 
-/// A fit, linearised: the waist of each posture is eliminated by Q.
+/// A linearised fit; Q eliminates the waist of each posture.
 struct Linearised {
   std::vector<ShiftEffects> effects;   ///< by cluster
-  std::vector<int> changes;            ///< postures from which on the robot has other feet down
-  Eigen::LLT<Eigen::MatrixXd> factor;  ///< of the information about all other unknowns
-  Eigen::VectorXd gradient;            ///< of these, J' Q r
+  std::vector<int> changes;            ///< postures from which on the robot stands on other feet
+  Eigen::LLT<Eigen::MatrixXd> factor;  ///< factor of the information about all other unknowns
+  Eigen::VectorXd gradient;            ///< gradient of these unknowns, J' Q r
   double squares = 0.0;                ///< sum of squared residuals
-  double freedom = 0.0;                ///< rows less unknowns, at least
+  double freedom = 0.0;                ///< rows minus unknowns, at least
 };
 
-/// Axes of the links in each posture, in the cameras' frame.
+/// Poses of the links in each posture, in the cameras' frame.
 std::vector<std::vector<Transform>> LinkPoses(const FitProblem& problem, const Fit& fit) {
   Geometry geometry = ApplyErrors(problem.model, fit.delta);
   std::vector<std::vector<Transform>> poses;
@@ -52,8 +54,8 @@ std::vector<std::vector<Transform>> LinkPoses(const FitProblem& problem, const F
   return poses;
 }
 
-/// Rows less unknowns. In a motion each moment has a pose of the waist, and its rows tell as much
-/// as a part of as many: the pose counts as that part.
+/// Rows minus unknowns. In a motion each moment has its own pose of the waist, but its rows count
+/// as a part of a posture; the pose then counts as the same part.
 double Freedom(const BodyResiduals& body, const Selection& selection, int postures) {
   std::vector<double> rows(postures, 0.0);
   std::vector<double> told(postures, 0.0);
@@ -134,13 +136,13 @@ Linearised Linearise(const FitProblem& problem, const Selection& selection,
   return linear;
 }
 
-/// About a step, if nothing were unknown beside it but where the cluster is on its link.
+/// Information about a step, if only the cluster's position on its link is unknown beside it.
 Eigen::Matrix3d BesideItsMean(const Eigen::Matrix3d& after, const Eigen::Matrix3d& all) {
   return after - after * all.ldlt().solve(after);
 }
 
-/// The displacement in those directions in which it is known; elsewhere none. `least`: information
-/// that it has to exceed.
+/// The displacement in the directions in which it is known, zero in the others. `least` is the
+/// information that it has to exceed.
 Eigen::Vector3d KnownDisplacement(const Eigen::Matrix3d& information, const Eigen::Matrix3d& least,
                                   const Eigen::Vector3d& score) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(information);
@@ -154,14 +156,14 @@ Eigen::Vector3d KnownDisplacement(const Eigen::Matrix3d& information, const Eige
   return displacement;
 }
 
-/// Whether the robot changes its feet between two postures, or shortly before or after.
+/// Whether the robot changes its feet between two postures, or within kAtAChange postures of them.
 bool IsAtAChange(const std::vector<int>& changes, int last_before, int first_after) {
   return std::any_of(changes.begin(), changes.end(), [&](int change) {
     return change > last_before - kAtAChange && change < first_after + kAtAChange;
   });
 }
 
-/// The best step of one cluster; counts those tried.
+/// The best step of one cluster. Counts the steps tried.
 DisplacementStep BestStep(const Linearised& linear, int cluster, const Eigen::VectorXd& explained,
                           int& tried) {
   const ShiftEffects& effects = linear.effects[cluster];
@@ -194,7 +196,7 @@ DisplacementStep BestStep(const Linearised& linear, int cluster, const Eigen::Ve
   return best;
 }
 
-/// Of the cluster about its mean before and that after the step, m per axis.
+/// Scatter of the cluster about its mean before and its mean after the step, m per axis.
 double Scatter(const ShiftEffects& effects, const DisplacementStep& step) {
   Eigen::Vector3d mean[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   double count[2] = {0.0, 0.0};
@@ -211,7 +213,7 @@ double Scatter(const ShiftEffects& effects, const DisplacementStep& step) {
   return std::sqrt(squares / (3.0 * (count[0] + count[1] - 2.0)));
 }
 
-/// Of the three numbers of a step among `tried` ones.
+/// Significance of the three numbers of a step among all that were tried.
 double Significance(const Linearised& linear, double gain, double level) {
   const double freedom = linear.freedom - 3.0;
   if (freedom < 1.0) return 0.0;

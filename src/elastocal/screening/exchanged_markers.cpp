@@ -11,11 +11,11 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeastWithin = 0.01;      // m: rms of two markers of a cluster
-constexpr double kLeastBetween = 0.05;     // m: of two clusters
-constexpr double kLeftByExchange = 0.4;    // of what was wrong, at most
-constexpr double kLeftAtFirstSight = 0.7;  // where the two help to place the root link
-constexpr std::size_t kLookedAt = 8;       // postures of a trial, before all of them
+constexpr double kLeastWithin = 0.01;      // m: rms distance of two markers of one cluster
+constexpr double kLeastBetween = 0.05;     // m: the same for two clusters
+constexpr double kLeftByExchange = 0.4;    // largest share of the distance that an exchange leaves
+constexpr double kLeftAtFirstSight = 0.7;  // the same where the two help to place the root link
+constexpr std::size_t kLookedAt = 8;  // postures of a trial that are examined before all of them
 
 /// Two markers of the recording, and the indices of their clusters.
 struct MarkerPair {
@@ -25,8 +25,8 @@ struct MarkerPair {
   double least() const { return cluster_a == cluster_b ? kLeastWithin : kLeastBetween; }
 };
 
-/// Squared distances of the two from where they should be, m^2: as they are labelled, and
-/// exchanged.
+/// Squared distances of two markers from their expected positions, m^2: as labelled, and with the
+/// labels exchanged.
 struct Misplaced {
   double before = 0.0;
   double after = 0.0;
@@ -42,13 +42,13 @@ struct PlacedPosture {
   Eigen::Matrix3Xd is, should;
 };
 
-/// What postures show of a pair.
+/// Evidence about a pair in some postures.
 struct Sightings {
   int telling = 0;             // postures that show both and the rest of the robot
-  int wrong = 0;               // of these, the ones that are exchanged
-  std::vector<int> exchanged;  // all that are taken for it
-  std::vector<int> trials;     // with such postures
-  Misplaced misplaced;         // in those that are wrong
+  int wrong = 0;               // of these: exchanged ones
+  std::vector<int> exchanged;  // all postures that count as exchanged
+  std::vector<int> trials;     // trials with such postures
+  Misplaced misplaced;         // sums over the postures in `wrong`
 
   void Add(const Sightings& more) {
     telling += more.telling;
@@ -71,7 +71,7 @@ class ExchangeSearch {
     all_.resize(few_.size());
   }
 
-  /// Looks at a few postures of each trial, and at all of one where there is a suspicion.
+  /// Examines a few postures of each trial, and all postures of a trial where there is a suspicion.
   Sightings Of(const MarkerPair& pair) {
     Sightings sightings;
     for (std::size_t trial = 0; trial < few_.size(); ++trial) {
@@ -115,7 +115,7 @@ class ExchangeSearch {
     return placed;
   }
 
-  /// A posture that does not tell is taken for what the one before it is.
+  /// A posture that shows nothing counts like the one before it.
   Sightings In(const std::vector<PlacedPosture>& postures, const MarkerPair& pair) const {
     Sightings sightings;
     bool exchanged = false;
@@ -135,7 +135,7 @@ class ExchangeSearch {
     return sightings;
   }
 
-  /// First with all markers placing the root link, then without those that may be wrong.
+  /// Places the root link first by all markers, then without those that may be wrong.
   std::optional<Misplaced> Look(const PlacedPosture& placed, const MarkerPair& pair) const {
     const std::optional<Misplaced> roughly = MisplacedIn(placed, pair);
     if (!roughly || !roughly->ByExchange(kLeftAtFirstSight * pair.least(), kLeftAtFirstSight)) {
@@ -148,7 +148,8 @@ class ExchangeSearch {
     return anew ? MisplacedIn(*anew, pair) : std::nullopt;
   }
 
-  /// Beside the others of their clusters: what the nominal robot errs by there does not count.
+  /// Distances relative to the other markers of their clusters, so that errors of the nominal robot
+  /// do not count.
   std::optional<Misplaced> MisplacedIn(const PlacedPosture& placed, const MarkerPair& pair) const {
     const Eigen::Vector3d a = placed.is.col(pair.a), b = placed.is.col(pair.b);
     if (!a.allFinite() || !b.allFinite()) return std::nullopt;
@@ -160,7 +161,7 @@ class ExchangeSearch {
                      (a - at_b).squaredNorm() + (b - at_a).squaredNorm()};
   }
 
-  /// Mean displacement of a cluster's markers other than these two, m.
+  /// Mean displacement of the other markers of a cluster, m.
   Eigen::Vector3d OffOthers(const PlacedPosture& placed, std::size_t cluster,
                             const MarkerPair& pair) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();

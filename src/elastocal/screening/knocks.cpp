@@ -15,13 +15,15 @@ namespace elastocal {
 namespace {
 
 constexpr int kMaxKnocks = 4;
-constexpr int kKnockUpdates = 6;         // steps, each with the noise
+constexpr int kKnockUpdates = 6;         // steps, each with an update of the noise
 constexpr double kLeastDistance = 1e-3;  // m
 constexpr double kLeastScatters = 3.0;
-constexpr double kLeastInMotion = 2.0;  // of significance: a correlation is known roughly
-constexpr int kMostMoments = 250;       // of motions, that say whether a search is worth its time
-constexpr int kWorthThinning = 4;       // times as many postures
-constexpr double kShareOfStep = 0.7;    // of a step, by few of the moments
+// Least significance in motions, where correlations are known only roughly.
+constexpr double kLeastInMotion = 2.0;
+// Moments of motions by which it is decided whether a search is worth its time.
+constexpr int kMostMoments = 250;
+constexpr int kWorthThinning = 4;     // ratio of postures from which thinning saves time
+constexpr double kShareOfStep = 0.7;  // share of a step that few of the moments must show
 
 std::vector<int> Estimated(const ErrorModel& model, const BaseParameters& base) {
   std::vector<int> free;
@@ -52,7 +54,7 @@ std::string NameBefore(const std::string& name, const std::vector<std::string>& 
   }
 }
 
-/// By posture, whether it is one of the first `count`.
+/// For each posture: whether it is one of the first `count`.
 std::vector<char> First(std::ptrdiff_t count, const Recording& recording) {
   std::vector<char> first(Size(recording.posture_count()), 0);
   std::fill_n(first.begin(), count, 1);
@@ -67,7 +69,7 @@ void SplitOne(const Knock& knock, ErrorModel& model, Recording& recording) {
   SplitMarkersOf(knock.markers, names, First(knock.posture, recording), model, recording);
 }
 
-/// The experiment as far as knocks have been found in it.
+/// The experiment, split at the knocks that were found so far.
 struct SplitExperiment {
   ErrorModel model;
   Recording recording;
@@ -84,7 +86,7 @@ Knock KnockAt(const DisplacementStep& step, const SplitExperiment& search) {
           step.displacement.norm(),           step.significance};
 }
 
-/// The markers of a cluster are two sets from now on, each new one where its other half was before.
+/// Splits the markers of a cluster; each new marker gets the position of its other half.
 void Split(const Knock& knock, int cluster, SplitExperiment& search) {
   const int first_new = search.model.marker_count();
   SplitOne(knock, search.model, search.recording);
@@ -103,7 +105,7 @@ void Split(const Knock& knock, int cluster, SplitExperiment& search) {
   search.clusters.push_back(std::move(before));
 }
 
-/// Of a motion: the step once more, with errors as correlated as they are without the knock.
+/// In a motion: the step computed again, with errors as correlated as they are without the knock.
 DisplacementStep AmongCorrelated(const DisplacementStep& step, SplitExperiment search,
                                  const CalibrationOptions& options) {
   SplitExperiment without = search;
@@ -130,7 +132,7 @@ SplitExperiment StartSearch(const ErrorModel& model, const Recording& recording,
   return search;
 }
 
-/// Fits what is known so far, and looks for a further step: of each of these sets of clusters.
+/// Fits what is known so far, and finds the largest step in each of these sets of clusters.
 std::vector<DisplacementStep> NextSteps(const CalibrationOptions& options,
                                         const std::vector<std::vector<LabelCluster>>& sets,
                                         SplitExperiment& search) {
@@ -147,9 +149,10 @@ std::vector<DisplacementStep> NextSteps(const CalibrationOptions& options,
   return steps;
 }
 
-/// Whether a recording of thousands of moments can have a knock. A step that all of them prove is
-/// about as large in every tenth of them, and has about a tenth of its significance: of its own
-/// cluster, since postures of rest, which are all kept, may make another one's larger.
+/// Whether a recording of thousands of moments may contain a knock, by every tenth of its moments.
+/// A step in all moments is about as large in these, and has about a tenth of its significance.
+/// Only steps of its own cluster are compared, because postures of rest, which are all kept, may
+/// give another cluster a larger one.
 bool MayHaveKnock(const ErrorModel& model, const Recording& recording, const BaseParameters& base,
                   const std::vector<LabelCluster>& clusters, const CalibrationOptions& options) {
   const Recording thinned = WithThinnedMotions(recording, kMostMoments);

@@ -12,57 +12,60 @@
 
 namespace elastocal {
 
-/// A cluster of markers that was displaced as a whole during the experiment, against the link that
-/// carries it. Distances within the cluster stay, so that only the model of the robot can tell. Or
-/// one marker of it (FindMovedMarkers).
+/// A knock: a cluster that was displaced as a whole on its link during the experiment. Distances
+/// within the cluster stay, so that only the model of the robot shows it. Or one of its markers was
+/// displaced (FindMovedMarkers).
 struct Knock {
   std::string cluster;
-  /// Those seen on both sides of it, which become two (SplitMarkers): indices in the recording as
-  /// split by the knocks before this one.
+  /// Markers that were seen on both sides of the knock, each of which becomes two (SplitMarkers).
+  /// They are indices in the recording as split by the knocks before this one.
   std::vector<int> markers;
-  int posture = 0;            ///< the first one after it in which the cluster was seen
-  int last_before = 0;        ///< the last one before it in which the cluster was seen
+  int posture = 0;            ///< the first posture after the knock in which the cluster was seen
+  int last_before = 0;        ///< the last posture before the knock in which the cluster was seen
   double distance = 0.0;      ///< m
-  double significance = 0.0;  ///< F of the step, over the value that it has to exceed
+  double significance = 0.0;  ///< F statistic of the step over its limit
 };
 
-/// Looks for knocked clusters in a recording of trials (in a table of postures for none). The order
-/// of the postures is taken for that of time.
+/// Finds knocked clusters in a recording of trials; empty for a posture table. The order of the
+/// postures counts as that of time.
 ///
-/// After a least-squares fit of all parameters in `base` (a few updates of the noise only), each
-/// cluster and each posture is tried as a change point: by how much the cost would drop if the
+/// After a least-squares fit of all parameters in `base` (with only a few updates of the noise),
+/// each cluster and each posture is tried as a change point: by how much would the cost drop if the
 /// cluster were displaced by a constant step, in the axes of its link, from that posture on (Rao's
-/// score test). All else that could explain the step is unknown beside it: joints, markers, feet
-/// and the waist of each posture, so that a cluster on the waist or a foot, which moves the pose
-/// that all others hang on, is told from these others. The split that explains most is a knock if
-/// - its F statistic is beyond what noise makes likely in any of the splits tried, but for a chance
+/// score test)? All else that could explain the step is unknown beside it: joints, markers, feet
+/// and the waist of each posture. A cluster on the waist or a foot, which moves the pose on which
+/// all others depend, is thus told from these others. The step that explains most is a knock if
+/// - its F statistic exceeds what noise makes likely in any of the steps tried, with a probability
 ///   of CalibrationOptions::outlier_probability;
-/// - it is at least 1 mm, which no model of a robot should be believed below;
-/// - it is at least three times the scatter of the cluster about its two positions (per axis), as a
-///   model that is wrong by a different amount in each posture can look like a step.
-/// Then the cluster is taken as two (SplitMarkers), and the search repeated: at most four times.
+/// - it is at least 1 mm, because no model of a robot is more exact;
+/// - it is at least three times the scatter of the cluster about its two positions (per axis),
+///   because a model with different errors in each posture can look like a step.
+///
+/// The cluster is then split into two (SplitMarkers), and the search is repeated, at most four
+/// times.
 std::vector<Knock> FindKnocks(const ErrorModel& model, const Recording& recording,
                               const BaseParameters& base, const std::vector<LabelCluster>& clusters,
                               const CalibrationOptions& options);
 
-/// Makes two of each marker of a knocked cluster. The name stays with the data after the knock:
-/// that is where later recordings see it. What was seen before goes to a new marker on the same
-/// link, `NAME(before)`. The new ones come last, so that earlier markers keep their indices and all
-/// parameters theirs.
+/// Splits each marker of a knocked cluster into two. The name stays with the observations after the
+/// knock, where later recordings see the marker. The observations before it go to a new marker on
+/// the same link, `NAME(before)`. New markers are the last ones, so that earlier markers and
+/// parameters keep their indices.
 void SplitMarkers(const std::vector<Knock>& knocks, ErrorModel& model, Recording& recording);
 
-/// Splits the markers of postures that were left out of the search as SplitMarkers has split those
-/// of `model`, by the order of time. `searched`, `left_out`: the places of both in the whole
-/// recording, ascending. Between the last posture before a knock and the first one after it, nobody
-/// knows where the cluster was: there, its markers are not seen.
+/// Splits the markers in postures that were left out of the search as SplitMarkers split those of
+/// `model`, by the order of time. `searched` and `left_out` are the places of both in the whole
+/// recording, ascending. Between the last posture before a knock and the first one after it, the
+/// position of the cluster is unknown; there its markers are hidden.
 void SplitLeftOut(const std::vector<Knock>& knocks, const ErrorModel& model,
                   const std::vector<int>& searched, const std::vector<int>& left_out,
                   Recording& recording);
 
-/// By marker of a recording that was split: which of the `marker_count` before it is.
+/// For each marker of a split recording: its index among the `marker_count` markers before the
+/// split.
 std::vector<int> MarkersBeforeSplit(const std::vector<Knock>& knocks, int marker_count);
 
-/// For a recording of the model's first markers: those that it lacks, never seen.
+/// Adds the markers that a recording of the model's first markers lacks; they are never seen.
 void AddUnseenMarkers(const ErrorModel& model, Recording& recording);
 
 }  // namespace elastocal

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kLeastDisplaced = 0.05;      // m: two clusters
 constexpr double kLeastWrongDistance = 0.01;  // m: two markers
-constexpr double kFarNearer = 0.4;            // of what was wrong is left at most
-constexpr std::size_t kMostPostures = 8;      // of a trial, looked at
+constexpr double kFarNearer = 0.4;            // largest share of the deviation that is left
+constexpr std::size_t kMostPostures = 8;      // postures of a trial that are examined
 
 class LabelSuspicionSearch {
  public:
@@ -58,7 +58,7 @@ class LabelSuspicionSearch {
                        [&](int m) { return Seen(recording_, posture, m); });
   }
 
-  /// Places the waist by all markers but those of the two clusters, then compares.
+  /// Places the waist by all markers but those of the two clusters, then compares the clusters.
   void TryClusters(int trial, const LabelCluster& a, const LabelCluster& b,
                    const std::vector<NominalPosture>& postures) {
     if (a.markers.size() != b.markers.size()) return;
@@ -93,7 +93,8 @@ class LabelSuspicionSearch {
     Keep(trial, a, b, count, before, after, kLeastDisplaced);
   }
 
-  /// Medians of a cluster's distances over the postures; NaN where never seen together.
+  /// Medians of the distances within a cluster over the postures; NaN for markers that were never
+  /// seen together.
   Eigen::MatrixXd Distances(const LabelCluster& cluster,
                             const std::vector<NominalPosture>& postures) const {
     const auto size = static_cast<Eigen::Index>(cluster.markers.size());
@@ -184,7 +185,7 @@ bool IsExchanged(const Recording& recording, const LabelSuspicion& suspicion, in
                             recording.trial[posture]);
 }
 
-/// The postures of a trial that are exchanged; none: all of those that see both.
+/// The exchanged postures of a trial; empty: all that show both markers.
 std::optional<int> ExchangedPart(const Recording& recording, const LabelSuspicion& suspicion,
                                  int trial) {
   int exchanged = 0;

@@ -21,25 +21,25 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeastRange = 0.1;               // rad: of a joint whose sign can be judged
-constexpr double kLeastSlideRange = 0.03;         // m
-constexpr double kLeastDiscrepancy = 0.06;        // rad: beyond errors of a robot
+constexpr double kLeastRange = 0.1;         // rad: least range of a joint whose sign can be judged
+constexpr double kLeastSlideRange = 0.03;   // m
+constexpr double kLeastDiscrepancy = 0.06;  // rad: beyond errors of a robot
 constexpr double kLeastSlideDiscrepancy = 0.015;  // m
-constexpr double kFarBetter = 0.5;                // of the discrepancy is left at most
+constexpr double kFarBetter = 0.5;                // largest share of the discrepancy that is left
 constexpr double kStill = 2e-5;                   // rad or m: encoders count in steps
 constexpr double kAsLogged = 1e-6;                // rad or m
 constexpr int kLeastFrozen = 2;                   // postures
 constexpr int kLeastJudged = 4;                   // of a trial
 
-/// Median of the absolute values: single postures may be shown wrong.
+/// Median of the absolute values, since single postures may be wrong.
 double Typical(const Eigen::VectorXd& values) {
   return values.size() == 0 ? 0.0 : Median(values.cwiseAbs());
 }
 
 double Range(const Eigen::VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
 
-/// What the logged and the shown positions of the trials say. Entries are those of q, then the
-/// motors of the linkages: where rods move joints, their motors are logged.
+/// Compares logged positions with those that the markers show, for all trials. Entries are those of
+/// q, then the motors of the linkages: where rods move joints, the motors are logged.
 class SuspicionSearch {
  public:
   SuspicionSearch(const ErrorModel& model, const Recording& recording)
@@ -95,7 +95,7 @@ class SuspicionSearch {
            (suspicion.before * suspicion.before - suspicion.after * suspicion.after);
   }
 
-  /// Where markers do not show a linkage's joints, these are as logged, and so are its motors.
+  /// Where markers do not show a linkage's joints, these and the motors are taken as logged.
   void AddMotors(int k) {
     const Linkage& linkage = tree_.linkages[Size(k)];
     const std::vector<int> joints = CoordinatesOf(tree_, linkage);
@@ -107,7 +107,7 @@ class SuspicionSearch {
     for (Eigen::Index i = 0; i < logged_.rows(); ++i) {
       const auto logged = MotorPositions(tree_, linkage, logged_(i, joints).transpose());
       const auto shown = MotorPositions(tree_, linkage, shown_(i, joints).transpose());
-      // Where rods do not reach, nothing is said of them.
+      // Where the rods do not close, the motors are not judged.
       const Eigen::VectorXd unknown = logged.value_or(Eigen::VectorXd::Zero(count));
       logged_.row(i).tail(count) = unknown.transpose();
       shown_.row(i).tail(count) = (logged && shown ? *shown : unknown).transpose();
@@ -138,7 +138,7 @@ class SuspicionSearch {
     return shown_(postures, c);
   }
 
-  /// The same mistake in several trials is one.
+  /// Adds a mistake; the same mistake in several trials becomes one.
   void Add(LogContradiction kind, int a, int b, const std::vector<int>& postures, double before,
            double after) {
     LogSuspicion& suspicion = found_[{static_cast<int>(kind), a, b}];
@@ -152,8 +152,8 @@ class SuspicionSearch {
     suspicion.after += count * after * after;
   }
 
-  /// The offset of a joint and misplaced markers add a constant to what is shown: where the joint
-  /// moves, its sign is told without it.
+  /// Judges the sign by the motion of the joint: its offset and wrong marker positions only add a
+  /// constant to the shown positions.
   void TrySign(int c, const std::vector<int>& postures) {
     const auto varying = [](const Eigen::VectorXd& values) -> Eigen::VectorXd {
       return values.array() - Median(values);
@@ -171,8 +171,7 @@ class SuspicionSearch {
     return true;
   }
 
-  /// A sign that one trial shows to be reversed is so in others as well where the joint did not
-  /// move but is shown on the other side of zero.
+  /// Adds trials to a reversed sign where the joint rests but is shown beyond zero.
   void FollowSigns() {
     std::vector<int> reversed;
     for (const auto& [key, suspicion] : found_) {
@@ -193,7 +192,7 @@ class SuspicionSearch {
     }
   }
 
-  /// No marker shows the motion of the log, which may have been that of another joint.
+  /// Whether no marker shows the motion in the log, which may have been that of another joint.
   bool HidesMotion(int c, const std::vector<int>& postures) const {
     return (Shown(c, postures) - Logged(c, postures)).cwiseAbs().maxCoeff() < kAsLogged &&
            Range(Logged(c, postures)) >= LeastRange(c);
@@ -216,7 +215,7 @@ class SuspicionSearch {
 
   void TryFrozen(int c, const std::vector<int>& postures) {
     if (Range(Logged(c, postures)) < kStill) return TryDead(c, postures);
-    if (Range(Logged(c, postures)) < LeastRange(c)) return;  // it was not to move
+    if (Range(Logged(c, postures)) < LeastRange(c)) return;  // it was not meant to move
     std::vector<int> longest;
     std::vector<int> run;
     for (int i : postures) {
@@ -231,8 +230,8 @@ class SuspicionSearch {
     std::vector<int> others;
     std::set_difference(postures.begin(), postures.end(), longest.begin(), longest.end(),
                         std::back_inserter(others));
-    // A joint that rests while others move is logged in one place as well, and the markers show it
-    // in one. The first posture may have been reached before it froze.
+    // A joint that rests while others move is also logged at one position, and the markers show it
+    // at one. The first posture may have been reached before the joint froze.
     const Eigen::VectorXd shown = Shown(c, longest);
     if (Typical(shown.array() - Median(shown)) < 0.5 * LeastDiscrepancy(c)) return;
     const double before = Typical(shown - Logged(c, longest));
@@ -241,8 +240,7 @@ class SuspicionSearch {
     Add(LogContradiction::kFrozen, c, -1, longest, before, after);
   }
 
-  /// A joint may have frozen, or come back, while a posture was held: its mean is neither the place
-  /// that was logged nor the true one.
+  /// Adds a posture in which the joint froze or came back: its mean position is wrong.
   void TakeHalfFrozen(int c, const std::vector<int>& postures, std::vector<int>& frozen) const {
     const auto wrong = [&](int i) {
       return std::abs(shown_(i, c) - logged_(i, c)) >= LeastDiscrepancy(c);
@@ -253,7 +251,7 @@ class SuspicionSearch {
     if (first != postures.begin() && wrong(first[-1])) frozen.insert(frozen.begin(), first[-1]);
   }
 
-  /// A joint that is logged in one place in all of a trial, while the markers show it moving.
+  /// Finds a joint with one logged position in a trial, while the markers show it moving.
   void TryDead(int c, const std::vector<int>& postures) {
     const Eigen::VectorXd shown = Shown(c, postures);
     const double moved = Typical(shown.array() - Median(shown));
@@ -263,8 +261,8 @@ class SuspicionSearch {
   const RobotTree& tree_;
   const Recording& recording_;
   Eigen::MatrixXd logged_, shown_;           ///< postures x entries
-  std::vector<int> entries_;                 ///< that move a marker
-  std::vector<int> unseen_;                  ///< coordinates that move none
+  std::vector<int> entries_;                 ///< entries that move a marker
+  std::vector<int> unseen_;                  ///< coordinates that move no marker
   std::vector<std::pair<int, int>> motors_;  ///< linkage and rod, of the entries beyond q
   std::map<std::array<int, 3>, LogSuspicion> found_;
 };
@@ -273,7 +271,7 @@ std::string NameOfEntry(const LogSuspicion& suspicion, int entry, const RobotTre
   return LoggedPositionOf(tree, suspicion.linkage, entry).name;
 }
 
-/// A posture without the mistake, which is one of a linkage's motors.
+/// The positions of a posture with the mistake corrected, which is one of a linkage's motors.
 Eigen::VectorXd WithoutMotorMistake(const LogSuspicion& suspicion, const RobotTree& tree,
                                     Eigen::VectorXd q) {
   const Linkage& linkage = tree.linkages[Size(suspicion.linkage)];
@@ -324,7 +322,8 @@ std::vector<LogSuspicion> PossibleLogMistakes(const Recording& recording, const 
   }
   std::vector<int> moving;
   for (int c = 0; c < tree.coordinate_count(); ++c) {
-    const bool logged = !IsMovedByRods(tree, tree.coordinate_joint[Size(c)]);  // else its motors
+    // Else its motors are logged.
+    const bool logged = !IsMovedByRods(tree, tree.coordinate_joint[Size(c)]);
     if (logged && Range(recording.q.col(c)) > 0.0) moving.push_back(c);
   }
   add(-1, moving, [&](int c) { return JointOfCoordinate(tree, c).type == JointType::kPrismatic; });

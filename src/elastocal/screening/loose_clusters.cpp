@@ -16,12 +16,12 @@ namespace {
 
 constexpr double kLeastOff = 5e-4, kLooseOff = 2e-3;  // m
 constexpr double kTimesOthers = 3.0, kFarBeyondOthers = 10.0;
-constexpr double kLeftOfBody = 0.5;  // of the squares of a cluster that moves as one body
+constexpr double kLeftOfBody = 0.5;  // largest share of the squares that a rigid motion leaves
 constexpr double kLeftOfAll = 0.25;
 constexpr int kFewestPostures = 8;
 constexpr std::size_t kFewestClusters = 3;
 
-/// Squared distances of markers, m^2.
+/// Sums of squared displacements of markers, m^2: as given, and after a rigid motion.
 struct Squares {
   double given = 0.0, left = 0.0;
   int markers = 0, postures = 0;
@@ -37,7 +37,7 @@ class Displacements {
         predicted_(
             Predict(result.model, result.delta, recording, options, &result.placement).positions) {}
 
-  /// Without the turn and displacement of the cluster in each posture.
+  /// Squares of a cluster, and what a rigid motion in each posture leaves of them.
   Squares AsBody(const std::vector<int>& markers) const {
     Squares squares;
     for (int i = 0; i < recording_.posture_count(); ++i) {
@@ -54,7 +54,8 @@ class Displacements {
       }
       const Eigen::VectorXd without = off - moved * moved.colPivHouseholderQr().solve(off);
       squares.given += off.squaredNorm();
-      // As many as there are numbers: those that were fitted to noise leave none.
+      // Scaled to the number of coordinates, because the fitted motion removes six of them from
+      // noise.
       squares.left += without.squaredNorm() * static_cast<double>(3 * count) /
                       static_cast<double>(3 * count - 6);
       squares.markers += static_cast<int>(count);
@@ -63,8 +64,8 @@ class Displacements {
     return squares;
   }
 
-  /// Without the displacement that all `clusters` share in each posture, by cluster: each counts
-  /// alike.
+  /// Squares of each cluster's mean displacement, and what is left after subtracting the
+  /// displacement that all `clusters` share in each posture. Each cluster has the same weight.
   std::vector<Squares> Together(const std::vector<const LabelCluster*>& clusters) const {
     std::vector<Squares> squares(clusters.size());
     for (int i = 0; i < recording_.posture_count(); ++i) {
@@ -109,7 +110,7 @@ class Displacements {
   Eigen::MatrixXd predicted_;
 };
 
-/// That of the root link moves nothing by the joints.
+/// Whether a cluster is on the root link, which joints do not move.
 bool IsOnRoot(const LabelCluster& cluster, const ErrorModel& model) {
   const Marker& marker = model.markers[Size(cluster.markers.front())];
   return model.tree.links[Size(marker.link)].body == 0;

@@ -17,10 +17,10 @@ constexpr int kFewestOnRoot = 3;
 constexpr int kFewestAside = 4;        // postures before and after
 constexpr double kCertain = 10.0;      // standard deviations of the sum of squares
 constexpr double kLeastMove = 1.5e-3;  // m
-constexpr double kMostUnequal = 9.0;   // ratio of squares, before and after
-constexpr double kNotRigid = 0.3;      // of the move, left by a rigid one
+constexpr double kMostUnequal = 9.0;   // ratio of squares between the two sides
+constexpr double kNotRigid = 0.3;      // share of the displacement that a rigid one leaves
 
-/// Where the markers on the root link were measured: their coordinates by posture.
+/// Measured positions of the markers on the root link, by posture.
 struct RootSightings {
   std::vector<int> markers, postures;
   Eigen::MatrixXd positions;  ///< postures x 3 markers, m
@@ -51,7 +51,7 @@ Eigen::Matrix3Xd AsColumns(const Eigen::RowVectorXd& positions) {
   return positions.reshaped(3, positions.size() / 3);
 }
 
-/// The row from which on the positions are others, by at least `kCertain`; 0: none.
+/// The row from which on the positions differ by at least `kCertain`; 0: none.
 Eigen::Index RowOfChange(const Eigen::MatrixXd& positions) {
   const Eigen::Index count = positions.rows(), size = positions.cols();
   const auto expected = static_cast<double>(size);
@@ -72,7 +72,7 @@ Eigen::Index RowOfChange(const Eigen::MatrixXd& positions) {
   return found;
 }
 
-/// How far rows lie from their median, m^2: the median over rows, and the mean of all but the
+/// Squared distances of rows from their median row, m^2: their median, and the mean without the
 /// furthest tenth, which may be mistakes of the cameras.
 struct RowScatter {
   double median = 0.0, mean = 0.0;
@@ -87,8 +87,8 @@ RowScatter ScatterOfRows(const Eigen::MatrixXd& rows) {
   return {Median(squares), squares.head(most).mean()};
 }
 
-/// Whether the root link stays before a row and from there on, each like the other; else it moves
-/// about for a while.
+/// Whether the root link stands still on both sides of a row, equally well; otherwise it moves for
+/// a while.
 bool StaysOnBothSides(const Eigen::MatrixXd& positions, Eigen::Index row) {
   const RowScatter before = ScatterOfRows(positions.topRows(row));
   const RowScatter after = ScatterOfRows(positions.bottomRows(positions.rows() - row));
@@ -96,7 +96,8 @@ bool StaysOnBothSides(const Eigen::MatrixXd& positions, Eigen::Index row) {
   return std::max({before.mean, after.mean, before.median, after.median}) < kMostUnequal * least;
 }
 
-/// How far a move of the frame displaces the markers that are not on the root link, rms, m.
+/// Root mean square displacement, by a motion of the frame, of the markers that are not on the root
+/// link, m.
 double DisplacedBy(const Transform& move, const ErrorModel& model, const Recording& recording) {
   double squares = 0.0;
   int count = 0;

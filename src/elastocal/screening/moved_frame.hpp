@@ -10,20 +10,20 @@
 
 namespace elastocal {
 
-/// From a posture of a table on, the frame of the markers lies elsewhere against the root link: a
+/// A displacement of the markers' frame against the root link from some posture of a table on: a
 /// tracker was pushed, or the robot's base.
 struct MovedFrame {
-  int posture = 0;                   ///< the first one, from 0
-  std::vector<std::string> markers;  ///< on the root link, which show it
-  double shift = 0.0;                ///< m, of their middle
+  int posture = 0;                   ///< the first posture with it, from 0
+  std::vector<std::string> markers;  ///< markers on the root link that show it
+  double shift = 0.0;                ///< displacement of their centre, m
   double angle = 0.0;                ///< rad
-  double displaced = 0.0;            ///< rms of the other markers, m
+  double displaced = 0.0;            ///< rms displacement of the other markers, m
 };
 
-/// Looks for it in a posture table of a robot whose root link stands still, by three or more
-/// markers on that link: they are in one place before a posture and in another from there on, by
-/// ten times what they scatter beside that, as one rigid body, and the other markers are displaced
-/// by more than 1.5 mm. Nothing of a recording of trials, where each posture has a place of its
+/// Finds such a displacement in a posture table of a robot whose root link stands still. Three or
+/// more markers on that link show it: they are in one place before a posture and in another from
+/// there on, by ten times their scatter and as one rigid body. The other markers must be displaced
+/// by more than 1.5 mm. Nothing for a recording of trials, where each posture has a pose of its
 /// own.
 std::optional<MovedFrame> FindMovedFrame(const ErrorModel& model, const Recording& recording);
 

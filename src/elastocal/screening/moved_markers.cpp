@@ -13,22 +13,22 @@
 namespace elastocal {
 namespace {
 
-constexpr int kFewestOnSide = 4;             // postures before and after
+constexpr int kFewestOnSide = 4;             // postures on each side
 constexpr double kLeastStepOfMarker = 1e-3;  // m
 constexpr double kLeastOfScatter = 3.0;
-constexpr double kLeastOfLargest = 0.1;  // step of a distance of its own
-constexpr double kOthersStay = 0.3;      // times that, at most
+constexpr double kLeastOfLargest = 0.1;  // smallest step of a distance, relative to the largest
+constexpr double kOthersStay = 0.3;      // largest step of other distances, relative to these
 constexpr std::size_t kFewestSteps = 2;
-constexpr int kSplitsOfTable = 60;  // that are tried first
+constexpr int kSplitsOfTable = 60;  // postures that are tried first
 
-/// Of the distance of two markers at a posture, m.
+/// Step of the distance of two markers at a posture, m.
 struct DistanceStep {
   double size = 0.0;
-  double scatter = 0.0;  ///< about either side, by medians
+  double scatter = 0.0;  ///< scatter about either side, by medians
   double spread = 0.0;   ///< the same, by means
 };
 
-/// Nothing where it was not seen often enough on either side.
+/// The step; nothing where the distance was not seen often enough on either side.
 std::optional<DistanceStep> StepAt(const Recording& recording, int a, int b, int posture) {
   std::vector<double> sides[2];
   for (int i = 0; i < recording.posture_count(); ++i) {
@@ -46,8 +46,8 @@ std::optional<DistanceStep> StepAt(const Recording& recording, int a, int b, int
       std::accumulate(off.begin(), off.end(), 0.0) / static_cast<double>(off.size())};
 }
 
-/// By how much a marker moved against the others of its cluster at a posture, m; nothing if it did
-/// not, or not alone.
+/// Displacement of a marker against the others of its cluster at a posture, m; nothing if it did
+/// not move, or not alone.
 std::optional<DistanceStep> MoveOf(const Recording& recording, const std::vector<int>& markers,
                                    int marker, int posture) {
   DistanceStep most;

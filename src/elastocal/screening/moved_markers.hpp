@@ -9,11 +9,11 @@
 
 namespace elastocal {
 
-/// Markers of a posture table that fell off and were glued on again elsewhere, at most one in each
-/// cluster: from some posture on, its distances to the others of its cluster are other ones, two of
-/// them at least, while those among the others stay. By 1 mm and more, and by three times what the
-/// distances scatter besides (by medians, so that outliers are none). Empty for trials, whose
-/// frames tell it better (session_shapes.hpp).
+/// Finds markers of a posture table that fell off and were fixed elsewhere, at most one in each
+/// cluster. From some posture on, at least two of its distances to the other markers of its cluster
+/// are different, while the distances among the others stay. The change is at least 1 mm and three
+/// times the scatter of the distances (by medians, so that outliers do not count). Empty for
+/// trials, whose frames show it better (session_shapes.hpp).
 std::vector<Knock> FindMovedMarkers(const Recording& recording,
                                     const std::vector<LabelCluster>& clusters);
 

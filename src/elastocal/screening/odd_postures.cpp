@@ -17,22 +17,24 @@
 namespace elastocal {
 namespace {
 
-constexpr int kFewestSoundPostures = 8;    // postures by which a robot is placed
+constexpr int kFewestSoundPostures = 8;    // smallest number of postures that place a robot
 constexpr double kOddDistance = 0.015;     // m
-constexpr double kOddShare = 0.015;        // of the robot's size, where that is less
-constexpr double kOddRatio = 3.0;          // times the median of those that it is placed by
+constexpr double kOddShare = 0.015;        // share of the robot's size, if that is smaller
+constexpr double kOddRatio = 3.0;          // times the median of the postures that place the robot
 constexpr double kOddOfCalibrated = 5e-4;  // m
-constexpr double kSoundDistance = 0.05;    // m, of that median: the robot is placed
+// m, largest such median with which the robot counts as placed
+constexpr double kSoundDistance = 0.05;
 constexpr double kLeftOfOdd = 0.5;
 constexpr int kFewestOddPostures = 3;
-constexpr double kLeastShareOfOdd = 0.6;  // of the odd postures
+constexpr double kLeastShareOfOdd = 0.6;  // share of the odd postures
 constexpr std::size_t kMostOddKinds = 2;
 constexpr std::size_t kMostListedPostures = 8;
-constexpr double kLeastOfGain = 0.8;  // of the squares of what the markers show beside the log
-constexpr int kToldGrid = 48;         // of positions that a joint may have
+// Share of the squares of the difference between shown and logged positions.
+constexpr double kLeastOfGain = 0.8;
+constexpr int kToldGrid = 48;  // number of positions of a joint that are tried
 constexpr int kToldHalvings = 12;
 
-/// One way in which a posture may be wrong: puts right what it can; false where it cannot.
+/// A possible mistake of a posture. `undo` corrects it; false where that is impossible.
 struct PostureChange {
   std::string what;  ///< "arm_3_joint: the sign of its positions is reversed"
   std::function<bool(const Recording& of, int posture, Recording& corrected)> undo;
@@ -76,13 +78,14 @@ class OddSearch {
       });
       found.push_back(std::move(*best));
     }
-    // What explains only a few of them is chance.
+    // A mistake that explains only a few of them is chance.
     if (left.size() > (1.0 - kLeastShareOfOdd) * static_cast<double>(odd_.size())) return {};
     return found;
   }
 
  private:
-  /// By a part of the table, with the distance of each posture and their median in that part, m.
+  /// The robot placed by a part of the table: distance of each posture, and their median in that
+  /// part, m.
   struct PlacedByPart {
     PlacedNominal robot;
     std::vector<double> distance;
@@ -252,8 +255,8 @@ class OddSearch {
     return best;
   }
 
-  /// Where most postures of a stretch have the mistake, all have, if it can hide in the others: a
-  /// joint near zero has either sign.
+  /// If most postures of a stretch have the mistake, and it can be hidden in the others, all have
+  /// it: a joint near zero has either sign.
   void FillStretch(const PostureChange& change, const Recording& current,
                    OddPostures& found) const {
     const int begin = found.postures.front(), end = found.postures.back() + 1;
@@ -269,7 +272,7 @@ class OddSearch {
     found.corrected = std::move(filled);
   }
 
-  /// A joint that was somewhere else, where the markers show it.
+  /// Tries another position of a joint, where the markers show it.
   std::optional<OddPostures> Told(const Recording& current, const std::vector<int>& odd) const {
     std::vector<PostureChange> changes;
     for (const int k : MovedJoints()) {
@@ -313,14 +316,14 @@ class OddSearch {
     return by_gain ? std::nullopt : told;
   }
 
-  /// Whether the markers show a joint the further off, in all postures, the further it is from
-  /// where it is right.
+  /// Whether the difference between shown and logged positions of a joint grows, over all postures,
+  /// with the distance from where it is correct.
   static bool IsGain(const PostureChange& change, const Recording& current) {
     Recording told = current;
     for (int i = 0; i < current.posture_count(); ++i) change.undo(current, i, told);
     Eigen::MatrixXd by = told.q - current.q;
     by = by.unaryExpr([](double d) { return std::remainder(d, 2.0 * std::numbers::pi); });
-    Eigen::Index c = 0;  // the only one that is told
+    Eigen::Index c = 0;  // the only joint that is shown
     by.colwise().squaredNorm().maxCoeff(&c);
     const Eigen::VectorXd x = current.q.col(c).array() - current.q.col(c).mean();
     const Eigen::VectorXd d = by.col(c).array() - by.col(c).mean();

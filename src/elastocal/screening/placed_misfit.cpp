@@ -17,13 +17,13 @@ namespace elastocal {
 namespace {
 
 constexpr int kMostPlaced = 60;
-constexpr int kTurns = 8;     // by which root and markers are placed
+constexpr int kTurns = 8;     // rounds of placing root and markers in turn
 constexpr double kFar = 5.0;  // times the median distance
 
 struct Sighting {
   int posture = 0, marker = 0;
   Eigen::Vector3d measured;
-  bool left_out = false;  ///< where the root is placed
+  bool left_out = false;  ///< left out when the root is placed
 };
 
 ErrorModel AtOrigin(ErrorModel model) {
@@ -36,7 +36,7 @@ Geometry GeometryBy(const ErrorModel& model, const Eigen::VectorXd* errors) {
   return ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
 }
 
-/// The nominal robot among the markers that were measured.
+/// The nominal robot, placed among the measured markers.
 class PlacedRobot {
  public:
   PlacedRobot(const ErrorModel& model, const Recording& recording,
@@ -90,7 +90,8 @@ class PlacedRobot {
     return BodyOf(one) * places_[Size(one.marker)];
   }
 
-  /// From where the robot has it, m; nothing where its root is not placed.
+  /// Distance of a measured marker from its predicted position, m; nothing where its root is not
+  /// placed.
   std::optional<double> DistanceOf(const Sighting& one) const {
     const auto& root = roots_[Size(one.posture)];
     if (!root) return std::nullopt;
@@ -123,7 +124,7 @@ class PlacedRobot {
                         : std::vector<std::optional<Transform>>(bodies_.size(), placed.front());
   }
 
-  /// Each marker goes where most sightings have it on its link.
+  /// Places each marker where most observations have it on its link.
   void PlaceMarkers() {
     std::vector<std::vector<double>> seen(3 * places_.size());
     for (const Sighting& one : sightings_) {

@@ -15,12 +15,13 @@
 namespace elastocal {
 namespace {
 
-constexpr double kMarkerSd = 0.02;      // m: nominal robot and markers, of a large robot
-constexpr double kMarkerShare = 0.01;   // of the robot's size, of a small one
+constexpr double kMarkerSd = 0.02;      // m: errors of nominal robot and markers, for a large robot
+constexpr double kMarkerShare = 0.01;   // share of the robot's size, for a small robot
 constexpr double kLoggedSd = 0.5;       // rad
 constexpr double kLoggedSlideSd = 0.1;  // m
 constexpr double kWaistSd = 1.0;        // m, rad: about the first guess
-constexpr double kFarOff = 2.0;         // of these: markers, by joints that differ from the log
+// In these standard deviations: markers of joints that differ from the log.
+constexpr double kFarOff = 2.0;
 constexpr int kMostSteps = 20;
 constexpr double kSmallStep = 1e-4;
 
@@ -28,7 +29,7 @@ bool SlidesAlong(const RobotTree& tree, int coordinate) {
   return tree.joints[tree.coordinate_joint[coordinate]].type == JointType::kPrismatic;
 }
 
-/// Finds the positions of the joints in one posture after the other.
+/// Finds the positions of the joints, posture by posture.
 class MarkerPositionFinder {
  public:
   MarkerPositionFinder(const ErrorModel& model, const Recording& recording)
@@ -62,7 +63,7 @@ class MarkerPositionFinder {
     for (int i = 0; i < kWaistParameterCount; ++i) columns_[i] = {{i, 1.0}};
   }
 
-  /// Positions of all coordinates in posture `i`.
+  /// The positions of all coordinates in posture `i`.
   Eigen::VectorXd Find(int i) {
     const Eigen::VectorXd logged = recording_.q.row(i).transpose();
     const Start start = BestStart(i, logged);
@@ -97,14 +98,14 @@ class MarkerPositionFinder {
     double factor;
   };
 
-  /// Where the search in a posture begins.
+  /// Start of the search in a posture.
   struct Start {
     Eigen::VectorXd q;
     Transform T_ref_waist = Transform::Identity();
     double misfit = std::numeric_limits<double>::infinity();  ///< rms distance of the markers, m
   };
 
-  /// The waist that brings the markers nearest, with the joints at q.
+  /// Places the waist by the markers, with the joints at q.
   Start Register(int i, const Eigen::VectorXd& q) {
     PlaceWaist(Transform::Identity(), Vector6d::Zero(), geometry_);
     const Eigen::Matrix3Xd nominal = MarkerPositions(model_, geometry_, q);
@@ -123,8 +124,8 @@ class MarkerPositionFinder {
     return start;
   }
 
-  /// The log as it is or, where the markers are far from it, with the one reversed sign or exchange
-  /// of two joints that brings them nearest: from there the search finds its way.
+  /// The start of the search: the log or, where the markers are far from it, the log with the one
+  /// reversed sign or exchange of two joints that brings them nearest.
   Start BestStart(int i, const Eigen::VectorXd& logged) {
     Start best = Register(i, logged);
     if (!(best.misfit > kFarOff * marker_sd_)) return best;
@@ -155,7 +156,7 @@ class MarkerPositionFinder {
     return q;
   }
 
-  /// Sets information and gradient at x; returns the cost.
+  /// Computes information and gradient at x; returns the cost.
   double Linearise(int i, const Transform& T_ref_waist, const Eigen::VectorXd& logged,
                    const Eigen::VectorXd& x) {
     const auto size = x.size();
@@ -183,7 +184,7 @@ class MarkerPositionFinder {
               column.factor / marker_sd_ * block.col(static_cast<Eigen::Index>(k));
         }
       }
-      // A marker far off is wrong itself, or waits for the joints to come nearer.
+      // A marker that is far off is wrong, or waits for the joints to come nearer.
       const double weight = 1.0 / (1.0 + residual.squaredNorm() / 100.0);
       information_.noalias() += weight * J.transpose() * J;
       gradient_.noalias() += weight * J.transpose() * residual;
@@ -197,8 +198,9 @@ class MarkerPositionFinder {
   GeneralizedJacobian jacobian_;
   const double marker_sd_;  // m, of a coordinate
   Geometry geometry_;
-  std::vector<int> unknown_of_;  // by coordinate: its number beyond those of the waist; -1
-  std::vector<std::vector<Column>> columns_;  // by parameter: the unknowns that act like it
+  // By coordinate: its number after the unknowns of the waist; -1: none.
+  std::vector<int> unknown_of_;
+  std::vector<std::vector<Column>> columns_;  // by parameter: the unknowns with the same effect
   int count_ = 0;
   Eigen::MatrixXd information_;
   Eigen::VectorXd gradient_;

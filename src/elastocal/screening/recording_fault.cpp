@@ -13,7 +13,8 @@ namespace elastocal {
 
 namespace {
 
-/// Of an entry of q in a posture of a motion, by those before and after, rad/s or m/s; else 0.
+/// Velocity of an entry of q in a posture of a motion, by the postures before and after, rad/s or
+/// m/s; else 0.
 double VelocityOf(int coordinate, const Recording& recording, int posture) {
   if (recording.time_s.size() == 0 || recording.trials.empty()) return 0.0;
   const int trial = recording.trial[posture];
@@ -28,7 +29,7 @@ double VelocityOf(int coordinate, const Recording& recording, int posture) {
   return (recording.q(after, coordinate) - recording.q(before, coordinate)) / time;
 }
 
-/// Whether a posture is held, and was reached from the one before.
+/// Whether a posture is held and was reached from the one before it.
 bool IsReached(const Recording& recording, int posture) {
   if (posture < 1 || recording.trials.empty()) return posture > 0;
   const int trial = recording.trial[posture];
@@ -39,8 +40,8 @@ bool IsReached(const Recording& recording, int posture) {
 
 double LeastSize(FaultKind kind, bool slides) {
   if (kind == FaultKind::kJointLag) return 0.005;
-  // A lead is made more exactly than a gear's play lets an angle be known; what is more is the
-  // scale of the cameras.
+  // A lead screw is more exact than a gear, whose play limits the angle; a larger gain is the scale
+  // of the cameras.
   if (kind == FaultKind::kJointGain) return slides ? 0.002 : 0.005;
   if (kind == FaultKind::kUnfinished) return 0.003;
   if (kind == FaultKind::kCameraScale || IsInCameraSpace({kind})) return 0.0015;
@@ -82,7 +83,7 @@ double FactorOf(const RecordingFault& fault, const Recording& recording, int pos
   const bool in_trial = fault.trial < 0 || recording.trial[posture] == fault.trial;
   const bool within = posture >= fault.posture && (fault.end == 0 || posture < fault.end);
   if (!in_trial || !within) return 0.0;
-  if (fault.kind == FaultKind::kJointDrift) {  // from 0 in the first posture to 1 in the last
+  if (fault.kind == FaultKind::kJointDrift) {  // 0 in the first posture, 1 in the last
     const int last = (fault.end > 0 ? fault.end : recording.posture_count()) - 1;
     return static_cast<double>(posture - fault.posture) / std::max(1, last - fault.posture);
   }

@@ -9,77 +9,83 @@
 
 namespace elastocal {
 
-/// What may be wrong with a recording as a whole, beyond single markers.
+/// Faults of a recording as a whole, beyond single markers.
 enum class FaultKind {
-  kJointGain,    ///< a joint's positions are a multiple of the true ones
-  kJointOffset,  ///< a joint's positions are off by a constant from a posture on
-  kJointDrift,   ///< they drift steadily from the first to the last posture (of a trial)
-  kUnfinished,   ///< positions are ahead by a share of the move from the posture before
-  kJointLag,     ///< of motions: they are those of some time before
-  kCameraScale,  ///< the cameras' positions in one trial are a multiple of the true ones
-  kCameraAxis,   ///< the cameras' coordinates along one of their axes are, in all postures
-  kCameraShear,  ///< ... are off by a multiple of those along another axis
-  kCameraBend,   ///< the cameras' scale changes with the square of the distance from the middle
+  kJointGain,    ///< positions of a joint are a multiple of the true ones
+  kJointOffset,  ///< positions of a joint have a constant offset from some posture on
+  /// Positions of a joint drift steadily from the first to the last posture (of a trial)
+  kJointDrift,
+  /// Positions are ahead of the true ones by a share of the move from the posture before.
+  kUnfinished,
+  kJointLag,     ///< in motions: positions are those of an earlier time
+  kCameraScale,  ///< positions by the cameras in one trial are a multiple of the true ones
+  kCameraAxis,   ///< coordinates along one of the cameras' axes are a multiple, in all postures
+  /// Coordinates along one axis are off by a multiple of those along another, in all postures.
+  kCameraShear,
+  kCameraBend,  ///< scale of the cameras changes with the square of the distance from the middle
 };
 
-/// A fault that explains much of what the fit leaves.
+/// A fault that explains much of the residuals of a fit.
 struct RecordingFault {
   FaultKind kind = FaultKind::kJointGain;
-  int coordinate = -1;  ///< of the joints that are logged together, of the robot tree
-  int trial = -1;       ///< the only one that it is in; -1: all
-  int posture = 0;      ///< the first one that it is in
-  /// Gain less 1; offset, or drift in all, rad or m; s; scale less 1; share of the move; shear;
-  /// scale at the outermost marker less that in the middle.
+  int coordinate = -1;  ///< coordinate in the robot tree (of joints that are logged together)
+  int trial = -1;       ///< the only trial with the fault; -1: all
+  int posture = 0;      ///< the first posture with the fault
+  /// Gain minus 1; offset, or drift over all postures, rad or m; time, s; scale minus 1; share of
+  /// the move; shear; scale at the outermost marker minus that in the middle.
   double size = 0.0;
-  double sd = 0.0;     ///< of `size`, as wide as the postures scatter
-  double share = 0.0;  ///< of the sum of squared residuals that it explains
-  int linkage = -1;    ///< of the tree: `coordinate` is a motor of it; -1: of q
-  int end = 0;       ///< of a table, or a drift: the one after the last that it is in; 0: it lasts
-  int axis = -1;     ///< of the cameras' frame: 0, 1 or 2
-  int by_axis = -1;  ///< of a shear: the one whose coordinate displaces those along `axis`
+  double sd = 0.0;     ///< standard deviation of `size`, by the scatter of the postures
+  double share = 0.0;  ///< share of the sum of squared residuals that it explains
+  /// Linkage of the tree of which `coordinate` is a motor; -1: it is an entry of q.
+  int linkage = -1;
+  /// In a table, or of a drift: the posture after the last one with it; 0: to the end.
+  int end = 0;
+  int axis = -1;     ///< axis of the cameras' frame: 0, 1 or 2
+  int by_axis = -1;  ///< of a shear: axis whose coordinate displaces those along `axis`
 };
 
-/// How much of its size (of a gain, times the position) a fault has in a posture.
+/// Factor of a fault's size in a posture: of a gain, the position.
 double FactorOf(const RecordingFault& fault, const Recording& recording, int posture);
 
-/// Sizes from which a fault is none that a good robot and good cameras may have. `slides`: of a
-/// joint that does.
+/// Smallest size that a good robot with good cameras does not have. `slides`: the joint is
+/// prismatic.
 double LeastSize(FaultKind kind, bool slides);
 
-/// Sizes beyond which a fault is none: where a joint moves no marker, rounding would explain
-/// anything with a size large enough.
+/// Largest size of a fault. Where a joint moves no marker, a fault of any larger size would explain
+/// rounding.
 double LargestSize(FaultKind kind, bool slides);
 
-/// Whether it is more than chance: six standard deviations by the noise that is left without it,
-/// and four by that of the fit, which it is a part of. What a robot with play or hysteresis shows
-/// as well (lags, unfinished moves): six by that of the fit.
+/// Whether a fault exceeds chance: six standard deviations by the noise that is left without it,
+/// and four by that of the fit, which contains the fault. Lags and unfinished moves, which a robot
+/// with play or hysteresis also shows: six by that of the fit.
 bool IsCertain(const RecordingFault& fault);
 
-/// From the held posture before in the same trial or table, of all joints: postures x coordinates;
-/// in motions 0.
+/// Moves of all joints from the held posture before, in the same trial or table: postures x
+/// coordinates; 0 in motions.
 Eigen::MatrixXd MovesOf(const Recording& recording);
 
-/// Trials that move a joint by 0.2 rad or m and more.
+/// Trials in which a joint moves by more than 0.2 rad or m.
 std::vector<int> AllTrialsThatMove(const Recording& recording, int coordinate);
 
-/// The same; none if there is only one: a gain of its positions there is one in all.
+/// As AllTrialsThatMove, but empty if there is only one: a gain in that trial is one in all.
 std::vector<int> TrialsThatMove(const Recording& recording, int coordinate);
 
-/// Whether it is in the space that the cameras measure, the same in all postures.
+/// Whether the fault is one of the space that the cameras measure, the same in all postures.
 bool IsInCameraSpace(const RecordingFault& fault);
 
-/// By how much a fault of the cameras displaces the markers for each unit of its size, m: as
+/// Displacements of the markers by a fault of the cameras for one unit of its size, m: as
 /// Recording::markers.
 Eigen::MatrixXd CameraDisplacements(const RecordingFault& fault, const Recording& recording);
 
-/// The recording without it. Not for motors of rods.
+/// The recording with the fault corrected. Not for motors of rods.
 Recording WithoutFault(const Recording& recording, const RecordingFault& fault);
 
-/// Whether the fault is from a posture to the end of its trial: an encoder that was homed anew
-/// after the trial.
+/// Whether the fault extends from a posture to the end of its trial, as if an encoder was homed
+/// anew after the trial.
 bool IsInPartOfTrial(const RecordingFault& fault, const Recording& recording);
 
-/// "arm_left_4_joint: its positions are off by 1.02 +- 0.03 deg from trial b, posture 1 on".
+/// Text such as "arm_left_4_joint: its positions are off by 1.02 +- 0.03 deg from trial b, posture
+/// 1 on".
 std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
                           const Recording& recording);
 

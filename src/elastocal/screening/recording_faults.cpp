@@ -15,18 +15,19 @@
 namespace elastocal {
 namespace {
 
-constexpr double kStep = 1e-6;  // of a derivative by differences: rad, m, relative
+constexpr double kStep = 1e-6;  // step of difference quotients: rad, m, relative
 constexpr double kLeastExplained = 0.06;
-constexpr double kLeastOfChains = 0.5;  // of what is left of the chains that it is in
-constexpr int kLeastSide = 3;           // postures before and after it
-constexpr int kSplits = 12;      // of the recording, after which an offset of a joint may begin
-constexpr int kTrialSplits = 6;  // of a trial, after which one may begin that ends with the trial
+constexpr double kLeastOfChains = 0.5;  // share of the residuals of the chains with the fault
+constexpr int kLeastSide = 3;           // postures before and after the beginning of a fault
+constexpr int kSplits = 12;  // postures of the recording at which an offset of a joint may begin
+// Postures of a trial at which an offset to its end may begin.
+constexpr int kTrialSplits = 6;
 
 using Blocks = std::vector<Eigen::VectorXd>;
 
 class FaultSearch {
  public:
-  /// `only`: the fault that is looked for; none: all.
+  /// `only` is the fault to be measured; null: all are tried.
   FaultSearch(const CalibrationResult& result, const Recording& recording,
               const CalibrationOptions& options, const RecordingFault* only = nullptr)
       : result_(result),
@@ -37,8 +38,7 @@ class FaultSearch {
     fit_.placement = result.placement;
     fit_.noise = result.noise;
     fit_.prior_scale = result.prior_scale;
-    // A fault may be what the fit left out as outliers: all observations take part, but each by a
-    // limited weight.
+    // A fault may be among the outliers: all observations take part, with limited weights.
     fit_.weights = Weights();
     FitResiduals residuals(Problem(recording), selection_, result.posterior.parameters, fit_);
     BodyResiduals& body = residuals.body;
@@ -57,7 +57,7 @@ class FaultSearch {
       with_priors += body.Residual(static_cast<int>(b)).squaredNorm();
       squares_ += at_[b].squaredNorm();
     }
-    // By these weights the fit may be far from where the other unknowns explain most.
+    // With these weights, the fit may be far from the optimum of the other unknowns.
     squares_ = std::min(squares_, with_priors - 2.0 * equations.Decrease(covariance));
     if (only != nullptr) {
       Measure(equations, covariance, *only);
@@ -89,7 +89,7 @@ class FaultSearch {
                            Robustness::kMedians);
   }
 
-  /// Of observations and constraints.
+  /// Residuals of observations and constraints.
   Blocks Residuals(const BodyResiduals& body) const {
     Blocks residuals(posture_.size());
     for (std::size_t b = 0; b < posture_.size(); ++b) {
@@ -98,7 +98,7 @@ class FaultSearch {
     return residuals;
   }
 
-  /// Change of the residuals by a change of the recording, over kStep.
+  /// Derivative of the residuals by a change of the recording over kStep.
   Blocks Derivative(const Recording& changed) const {
     FitResiduals residuals(Problem(changed), selection_, result_.posterior.parameters, fit_);
     residuals.body.Evaluate(residuals.body.Start(), false);
@@ -117,7 +117,7 @@ class FaultSearch {
     return coordinates;
   }
 
-  /// What is tried: a fault, whose effect is a derivative times a factor of each posture.
+  /// A candidate: a fault whose effect is a derivative times a factor of each posture.
   struct Trial {
     RecordingFault fault;
     Eigen::VectorXd factor;
@@ -129,7 +129,7 @@ class FaultSearch {
     return trial;
   }
 
-  /// Of the chains (CalibrationResult::group) in whose postures a trial does anything.
+  /// Sum of squares of the chains (CalibrationResult::group) in whose postures it has an effect.
   double SquaresOfChains(const Blocks& derivative, const Eigen::VectorXd& factor) const {
     std::set<int> chains;
     for (std::size_t b = 0; b < posture_.size(); ++b) {
@@ -146,7 +146,7 @@ class FaultSearch {
     return squares;
   }
 
-  /// All of them, by what the fit leaves.
+  /// Measures candidates by the residuals of the fit.
   std::vector<RecordingFault> Measured(const NormalEquations& equations,
                                        const Eigen::MatrixXd& covariance, const Blocks& derivative,
                                        const std::vector<Trial>& trials) const {
@@ -158,7 +158,7 @@ class FaultSearch {
     std::vector<RecordingFault> measured;
     for (std::size_t k = 0; k < trials.size(); ++k) {
       RecordingFault fault = trials[k].fault;
-      // What has to be added to the recording is what it lacks.
+      // What has to be added to the recording is minus the fault.
       fault.size = -additions[k].value;
       fault.sd = std::sqrt(additions[k].variance * std::max(1.0, result_.posterior.cluster_factor));
       fault.share = additions[k].gain / squares_;
@@ -201,7 +201,7 @@ class FaultSearch {
     return Derivative(changed);
   }
 
-  /// Of all joints: a robot that came to rest later than it was measured.
+  /// Tries unfinished moves of all joints: the robot came to rest after it was measured.
   void TryUnfinished(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
     Try(equations, covariance, ByMoves(), {MakeTrial({.kind = FaultKind::kUnfinished})}, false);
   }
@@ -258,7 +258,7 @@ class FaultSearch {
                linkage.rods[static_cast<std::size_t>(motor.rod)].actuator);
   }
 
-  /// Of a joint or motor, by the derivative of its position.
+  /// Tries offsets of a joint or motor, by the derivative of its position.
   void TryOffsets(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
                   const Blocks& derivative, const RecordingFault& of, bool slides) {
     std::vector<Trial> trials;
@@ -278,7 +278,7 @@ class FaultSearch {
     const int count = recording_.posture_count();
     const int stride = std::max(1, count / kSplits);
     const auto add_split = [&](int split) {
-      // Nearly all postures, or nearly none: an error of the robot, or one bad posture.
+      // An offset of nearly all or nearly no postures is an error of the robot, or one bad posture.
       if (split < kLeastSide || split > count - kLeastSide) return;
       add(-1, split);
     };
@@ -287,7 +287,7 @@ class FaultSearch {
           found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end(),
           [](const RecordingFault& a, const RecordingFault& b) { return a.share < b.share; });
     };
-    // Every so many splits, and then all between the best of them and its neighbours.
+    // Tries evenly spread beginnings, then all between the best and its neighbours.
     const auto try_splits = [&](int begin, int end, int step, const auto& add_at) {
       const std::size_t before = found_.size();
       for (int split = begin + step; split < end; split += step) add_at(split);
@@ -308,7 +308,7 @@ class FaultSearch {
       const bool long_enough = end == 0 || end - begin >= 2 * kLeastSide;
       if (of.linkage < 0 && long_enough) add(trial, begin, end, FaultKind::kJointDrift);
     };
-    // Of one that the cameras see in one trial, a drift over all of them would be as likely.
+    // For a joint that markers show in one trial, a drift over all trials would be as likely.
     const bool several = recording_.trials.size() > 1;
     if (!several) add_drift(-1, 0, 0);
     try_all();
@@ -320,7 +320,7 @@ class FaultSearch {
       add(trial, begin);
       if (several) add_drift(trial, begin, end);
       try_all();
-      if (end == count) continue;  // to the end of the trial is to the end of the recording
+      if (end == count) continue;  // the end of the trial is the end of the recording
       try_splits(begin, end, std::max(1, (end - begin) / kTrialSplits), [&](int split) {
         if (split < begin + kLeastSide || split > end - kLeastSide) return;
         add(trial, split);
@@ -328,7 +328,7 @@ class FaultSearch {
     }
   }
 
-  /// An offset from a posture to another one: a joint that slipped and was set right again.
+  /// An offset from one posture to another: a joint that slipped and was corrected.
   template <typename Add, typename TryAll, typename BestSince>
   void TryStretches(int count, int stride, const Add& add, const TryAll& try_all,
                     const BestSince& best_since) const {
@@ -353,8 +353,7 @@ class FaultSearch {
     }
   }
 
-  /// Of the cameras' space, and of one trial. A scale of all trials is what a robot with other
-  /// lengths shows as well.
+  /// Tries faults of the cameras' space, and the scale of one trial (not of all: see the header).
   void TryScale(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
     std::vector<RecordingFault> of_cameras = {{.kind = FaultKind::kCameraBend}};
     for (int axis = 0; axis < 3; ++axis) {

@@ -8,27 +8,31 @@
 
 namespace elastocal {
 
-/// Looks for the fault that explains most of what a fit has left: each candidate is one more
-/// unknown beside all others (score test), so that it is not confused with what the robot's own
-/// errors explain as well. Candidates are the gain of each joint (but of those that rods
-/// move, whose levers are the robot's own errors), also in one of several trials that move it, an
-/// offset of each joint, or motor of rods, from
-/// a posture on (twelve of them, then all near the best one), in one trial alone or from a posture
-/// to the end of its trial (six of each, then all near the best one), of a table from a posture to
-/// another one and as a steady drift, in motions a lag, the scale of the cameras along one of their
-/// axes, a shear of two, a scale that changes from the middle outwards, and that in one of several
-/// trials (a scale of all of them looks like a robot all of whose lengths are off). Only faults
-/// that no good robot has are returned, the one that explains most first: of a size that matters
-/// (gain 0.5 %, of a sliding joint 0.2 %; offset 0.25 degrees, 1 mm; scale 0.15 %), certain (six
-/// standard deviations by the noise without it, four by that of the fit; six of what play looks
-/// like) and a part of what is left (6 %, of a clean ergoCub 4 %; or half of what is left of the
-/// chains that it is in).
+/// Finds the fault that explains most of the residuals of a fit. Each candidate is tested as one
+/// more unknown beside all others (score test), so that it is not confused with errors of the robot
+/// that explain the same. Candidates are:
+///
+/// - the gain of each joint, also in one of several trials that move it (not of joints that rods
+///   move, whose levers are errors of the robot);
+/// - an offset of each joint, or motor of rods: from a posture on (twelve postures, then all near
+///   the best), in one trial, from a posture to the end of its trial (six of each, then all near
+///   the best), and in a table from one posture to another;
+/// - in a table, a steady drift of each joint; in motions, a lag;
+/// - the scale of the cameras along one of their axes, a shear of two axes, and a scale that
+///   changes from the middle outwards;
+/// - the scale of the cameras in one of several trials (a common scale of all trials looks like a
+///   robot with wrong lengths).
+///
+/// Only faults that no good robot has are returned, the one that explains most first. The size must
+/// matter (gain 0.5 %, of a prismatic joint 0.2 %; offset 0.25 degrees or 1 mm; scale 0.15 %). The
+/// fault must be certain (IsCertain). It must explain 6 % of the squared residuals (a clean ergoCub
+/// reaches 4 %), or half of those of the chains with the fault.
 std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
                                                 const Recording& recording,
                                                 const CalibrationOptions& options);
 
-/// The same fault by what the fit of another recording leaves: its size and standard deviation,
-/// whatever they are.
+/// The same fault, measured by the residuals of a fit to another recording: its size and standard
+/// deviation, without any limits.
 RecordingFault MeasureFault(const RecordingFault& fault, const CalibrationResult& result,
                             const Recording& recording, const CalibrationOptions& options);
 

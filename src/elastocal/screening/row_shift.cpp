@@ -16,12 +16,12 @@ namespace elastocal {
 namespace {
 
 constexpr double kMisplaced = 0.02;     // m: beyond errors of a robot and of markers
-constexpr double kLeftUnshifted = 0.6;  // of the misfit is left at most
+constexpr double kLeftUnshifted = 0.6;  // largest share of the misfit that is left
 constexpr int kMostShifted = 3;         // rows
 constexpr int kLeastShiftedRows = 4;
-constexpr int kMostSearched = 2000;  // rows of a long table, its first ones
+constexpr int kMostSearched = 2000;  // rows of a long table that are searched, its first ones
 
-/// The table with the nominal robot's markers of each row.
+/// The table with the nominal markers of each row.
 class ShiftSearch {
  public:
   ShiftSearch(const ErrorModel& model, const Recording& recording)
@@ -56,7 +56,7 @@ class ShiftSearch {
     return row + shifted >= 0 && row + shifted < rows_;
   }
 
-  /// Where the root link is by the rows from `begin` on; of a free root, nowhere.
+  /// Pose of the root link by the rows from `begin` on; nothing for a free root.
   std::optional<Transform> Place(int begin, int shifted) const {
     if (recording_.free_root) return std::nullopt;
     return PlaceBy(begin, rows_, shifted);
@@ -75,8 +75,8 @@ class ShiftSearch {
     return FitRigid(nominal, measured);
   }
 
-  /// How far the markers of a row are from the nominal ones of its partner, median, m; NaN where
-  /// that cannot be told.
+  /// Distance of the markers of a row from the nominal ones of its partner, median, m; NaN where it
+  /// is unknown.
   double Error(int row, int shifted, const std::optional<Transform>& T_ref_root) const {
     if (!HasPartner(row, shifted)) return std::nan("");
     const auto T = recording_.free_root ? PlaceBy(row, row + 1, shifted) : T_ref_root;
@@ -97,7 +97,7 @@ class ShiftSearch {
     return errors;
   }
 
-  /// Median of what can be told; NaN where nothing can.
+  /// Median of the known values; NaN where there is none.
   static double Typical(const std::vector<double>& errors) {
     std::vector<double> told;
     std::copy_if(errors.begin(), errors.end(), std::back_inserter(told),
@@ -105,7 +105,7 @@ class ShiftSearch {
     return Median(told);
   }
 
-  /// The shift by so many rows that places the root link by the rows from `begin` on.
+  /// The shift by `rows` rows, if the rows from `begin` on place the root link.
   std::optional<RowShift> Try(int begin, int rows) const {
     const std::optional<Transform> T_ref_root = Place(begin, rows);
     const std::vector<double> as_is = Errors(0, 0, T_ref_root);
@@ -122,8 +122,8 @@ class ShiftSearch {
     return shift;
   }
 
-  /// Where the sum of errors, as they are before it and shifted from it on, is least, and before
-  /// that the rows that fit neither: their joints are those that were lost.
+  /// The row at which the sum of errors (unshifted before it, shifted from it on) is smallest;
+  /// before it also the rows that fit neither way, whose joints are the lost ones.
   static int FirstShifted(const std::vector<double>& as_is, const std::vector<double>& shifted) {
     double sum = 0.0, least = 0.0;
     std::size_t first = 0;
@@ -140,7 +140,8 @@ class ShiftSearch {
 
   const Recording& recording_;
   int rows_;
-  std::vector<Eigen::Matrix3Xd> nominal_;  ///< in the root link's frame, of the joints of each row
+  /// Nominal markers in the root link's frame, by the joints of each row.
+  std::vector<Eigen::Matrix3Xd> nominal_;
 };
 
 }  // namespace

@@ -9,13 +9,13 @@
 
 namespace elastocal {
 
-/// What was seen of a marker in the postures `there` (by posture, whether it is one) goes to a new
-/// marker of this name, the last one.
+/// Moves the observations of a marker in the postures marked in `there` (one entry a posture) to a
+/// new marker with this name, which is the last one.
 void SplitMarker(int marker, const std::string& name, const std::vector<char>& there,
                  Recording& recording);
 
-/// The same of several markers, and in the model: each new one, with its name in `names`, is on the
-/// same link and at the same nominal place.
+/// As SplitMarker for several markers, also in the model. Each new marker (name in `names`) is on
+/// the same link with the same nominal position.
 void SplitMarkersOf(const std::vector<int>& markers, const std::vector<std::string>& names,
                     const std::vector<char>& there, ErrorModel& model, Recording& recording);
 

@@ -19,14 +19,14 @@ namespace elastocal {
 namespace {
 
 constexpr double kFarFromNominal = 0.02;  // m: beyond errors of a robot and of markers
-constexpr double kLeftOfMisfit = 0.6;     // of the misfit is left at most
-constexpr std::size_t kMostTried = 60;    // postures, evenly spread
+constexpr double kLeftOfMisfit = 0.6;     // largest share of the misfit that is left
+constexpr std::size_t kMostTried = 60;    // postures that are tried, evenly spread
 constexpr std::size_t kLeastFrozenRows = 3;
 constexpr double kSamePosition = 2e-5;       // rad or m
-constexpr double kOtherDistance = 0.01;      // m: of two markers that are exchanged
-constexpr double kRightDistance = 0.3;       // of the difference is left at most
-constexpr double kLeastExchanged = 0.1;      // of the postures: fewer are outliers
-constexpr Eigen::Index kLeastSightings = 3;  // for the place of the root link
+constexpr double kOtherDistance = 0.01;      // m: difference of distances of two exchanged markers
+constexpr double kRightDistance = 0.3;       // largest share of the difference that is left
+constexpr double kLeastExchanged = 0.1;      // share of the postures: fewer are outliers
+constexpr Eigen::Index kLeastSightings = 3;  // for the pose of the root link
 
 /// Tries mistakes on a table.
 class TableSearch {
@@ -53,7 +53,7 @@ class TableSearch {
   std::vector<LogSuspicion> Log() {
     std::vector<LogSuspicion> found;
     if (misfit_ > kFarFromNominal) {
-      std::vector<int> logged;  // of joints that rods move, the motors are
+      std::vector<int> logged;  // where rods move joints, the motors are logged
       std::copy_if(coordinates_.begin(), coordinates_.end(), std::back_inserter(logged),
                    [&](int c) {
                      return !IsMovedByRods(model_.tree, model_.tree.coordinate_joint[Size(c)]);
@@ -113,7 +113,7 @@ class TableSearch {
     return tree.joints[Size(tree.coordinate_joint[Size(coordinate)])].type == JointType::kPrismatic;
   }
 
-  /// Nominal markers in the root link's frame and measured ones, of what was seen.
+  /// Nominal markers in the root link's frame, and the measured ones, for all that was seen.
   struct Sightings {
     Eigen::Matrix3Xd nominal, measured;
     std::vector<int> marker;
@@ -158,7 +158,7 @@ class TableSearch {
     }
   }
 
-  /// How far markers typically are from a nominal robot whose root link is best placed, m.
+  /// Typical distance of the markers from the nominal robot with the root link placed best, m.
   double Misfit(const Recording& recording) {
     std::vector<int> all(Size(recording.posture_count()));
     std::iota(all.begin(), all.end(), 0);
@@ -194,7 +194,7 @@ class TableSearch {
   }
 
   void TryFrozen(int c, std::vector<LogSuspicion>& found) {
-    if (recording_.free_root) return;  // each posture has a place of its own
+    if (recording_.free_root) return;  // each posture has a pose of its own
     std::vector<int> run, longest;
     for (const int i : all_) {
       if (!run.empty() &&
@@ -226,7 +226,8 @@ class TableSearch {
     return (MarkerPosition(recording_, i, m) - MarkerPosition(recording_, i, n)).norm();
   }
 
-  /// Medians of a cluster's distances over the postures; NaN where never seen together.
+  /// Medians of the distances within a cluster over the postures; NaN for markers that were never
+  /// seen together.
   Eigen::MatrixXd UsualDistances(const std::vector<int>& markers) const {
     const auto size = static_cast<Eigen::Index>(markers.size());
     Eigen::MatrixXd usual = Eigen::MatrixXd::Constant(size, size, std::nan(""));
@@ -243,7 +244,7 @@ class TableSearch {
     return usual;
   }
 
-  /// Exchanges within a cluster in a tenth to half of the postures.
+  /// Finds exchanges within a cluster in a tenth to half of the postures.
   void TryWithin(const LabelCluster& cluster, std::vector<LabelSuspicion>& found) {
     const Eigen::MatrixXd usual = UsualDistances(cluster.markers);
     for (Eigen::Index a = 0; a < usual.rows(); ++a) {
@@ -271,8 +272,8 @@ class TableSearch {
     }
   }
 
-  /// By how much the distances of two markers to the others of their cluster are off in a posture,
-  /// rms, and once the two are exchanged, m; 0 where none is seen.
+  /// Deviation of the distances of two markers to the others of their cluster in a posture, rms, m:
+  /// as labelled, and with the two exchanged. 0 where none is seen.
   std::pair<double, double> DistancesOff(int i, const std::vector<int>& markers,
                                          const Eigen::MatrixXd& usual, Eigen::Index a,
                                          Eigen::Index b) const {
@@ -295,10 +296,10 @@ class TableSearch {
   const ErrorModel& model_;
   const Recording& recording_;
   Geometry geometry_;
-  std::vector<int> coordinates_;  ///< that move a marker
-  std::vector<int> all_;          ///< postures
+  std::vector<int> coordinates_;  ///< coordinates that move a marker
+  std::vector<int> all_;          ///< all postures
   Recording thinned_;             ///< some of them
-  double misfit_ = 0.0;           ///< of the table as it is, m
+  double misfit_ = 0.0;           ///< misfit of the table as it is, m
 };
 
 }  // namespace

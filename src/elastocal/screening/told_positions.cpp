@@ -17,14 +17,16 @@
 namespace elastocal {
 namespace {
 
-constexpr int kPlacings = 10;          // of place and positions
-constexpr int kRangeSteps = 24;        // over the joint's range
-constexpr int kStepHalvings = 8;       // of a step
+constexpr int kPlacings = 10;          // rounds of pose and positions in turn
+constexpr int kRangeSteps = 24;        // steps over the joint's range
+constexpr int kStepHalvings = 8;       // halvings of a step
 constexpr double kLongestSlide = 1.0;  // m
 constexpr double kAsTold = 0.5;        // rad
-constexpr double kMostUntold = 0.2;    // of the postures, neither as logged nor half a turn off
+// Share of the postures that are neither as logged nor half a turn off.
+constexpr double kMostUntold = 0.2;
 constexpr std::size_t kFewestHalfTurns = 3;
-constexpr double kLeastOfHalfTurn = 0.7, kMoreThanHalfTurn = 1.1;  // range of a column, and limits
+// Range of a column and of the joint's limits, in half turns.
+constexpr double kLeastOfHalfTurn = 0.7, kMoreThanHalfTurn = 1.1;
 
 class ToldPositions {
  public:
@@ -69,7 +71,7 @@ class ToldPositions {
     return placed.has_value();
   }
 
-  /// Sum of squares of the markers' distances in a posture, m^2.
+  /// Sum of squared distances of the markers in a posture, m^2.
   double SquaresAt(int i, double position) const {
     Eigen::VectorXd q = recording_.q.row(i).transpose();
     q[coordinate_] = position;

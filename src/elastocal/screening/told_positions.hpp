@@ -8,23 +8,23 @@
 
 namespace elastocal {
 
-/// A posture table with the positions of one joint as its markers tell them, whatever the column
-/// says: in each posture the one within the joint's limits (at most half a turn or 1 m to either
-/// side of 0) that brings the nominal markers nearest to the measured ones, with one place of the
-/// root link for all postures. Place and positions are found in turn. `coordinate`: entry of q that
-/// drives one joint.
+/// The posture table with the positions of one joint as its markers show them, whatever the column
+/// says. In each posture it is the position within the joint's limits (at most half a turn or 1 m
+/// to either side of 0) that brings the nominal markers nearest to the measured ones, with one pose
+/// of the root link for all postures. Pose and positions are found in turn. `coordinate` is an
+/// entry of q that drives one joint.
 Recording WithToldPositions(const ErrorModel& model, const Recording& recording, int coordinate);
 
-/// A posture table with half a turn more or less of one joint in some postures.
+/// A posture table in which one joint is corrected by half a turn in some postures.
 struct HalfTurns {
   std::vector<int> postures;
   Recording turned;
 };
 
-/// Postures in which the markers tell a joint half a turn from where its column has it, while they
-/// confirm it in the others: its position was logged modulo half a turn. None where they are fewer
-/// than three, where more than a fifth of the postures tell neither, where the column does not keep
-/// within half a turn, or where the joint does.
+/// Finds postures in which the markers show a joint half a turn from its column, while they confirm
+/// the column in the others: its position was logged modulo half a turn. Empty where these are
+/// fewer than three, where more than a fifth of the postures show neither, where the column spans
+/// more than half a turn, or where the joint itself moves by less.
 HalfTurns FindHalfTurns(const ErrorModel& model, const Recording& recording, int coordinate);
 
 }  // namespace elastocal

@@ -14,28 +14,29 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeastSpread = 5.0;     // N.m or N: standard deviation of static torques ...
-constexpr double kLever = 0.02;          // ... and by how much the weight carried may be aside, m
-constexpr double kLeastReversed = 1.0;   // instead of 5 where sensors follow statics reversed
-constexpr double kLeverReversed = 5e-3;  // instead of 20 mm, where ten postures say so
-constexpr double kCertainSlopeSd = 0.1;  // of a sensor with less spread, in ...
-constexpr std::size_t kManyPairs = 10;   // ... so many postures
+constexpr double kLeastSpread = 5.0;  // N.m or N: standard deviation of static torques ...
+constexpr double kLever = 0.02;  // m: ... or lever by which the carried weight may be displaced
+constexpr double kLeastReversed = 1.0;   // instead of 5, where sensors follow statics reversed
+constexpr double kLeverReversed = 5e-3;  // instead of 20 mm, where at least ten postures show it
+// Sd of the slope of a sensor with less variation, in at least ...
+constexpr double kCertainSlopeSd = 0.1;
+constexpr std::size_t kManyPairs = 10;  // ... this number of postures
 constexpr double kNoSlope = 0.2;
 constexpr double kLeastBias = 10.0;       // N.m or N
-constexpr double kLeastBiasShare = 0.25;  // of the largest static torque
+constexpr double kLeastBiasShare = 0.25;  // share of the largest static torque
 constexpr double kLeastSlope = 0.5;
 constexpr double kMostSlope = 2.0;
 constexpr double kLeastCorrelation = 0.5;
 constexpr std::size_t kLeastPairs = 5;
-constexpr double kLeftOfExchange = 0.25;  // of the squares
-constexpr double kLeftOfReversal = 0.25;  // of the squares of all sensors
-constexpr std::size_t kManySensors = 3;   // that are wrong in the same way
+constexpr double kLeftOfExchange = 0.25;  // share of the squares
+constexpr double kLeftOfReversal = 0.25;  // share of the squares of all sensors
+constexpr std::size_t kManySensors = 3;   // number of sensors that are wrong in the same way
 constexpr double kLeastCommon = 1.5;      // factor of all sensors, or its inverse
-constexpr double kLeastAlone = 1.5;       // the same of one among others that are right
-constexpr double kAlike = 1.25;           // factor between a sensor's slope and the common one
-constexpr double kFollows = 0.9;          // correlation of sensors whose slope counts
+constexpr double kLeastAlone = 1.5;       // the same for one sensor among others that are right
+constexpr double kAlike = 1.25;           // ratio of a sensor's slope to the common one
+constexpr double kFollows = 0.9;          // correlation from which a sensor's slope counts
 
-/// Measured torques by those of statics, where these vary enough to tell.
+/// Line of measured over static torques, where these vary enough.
 struct TorqueLine {
   double slope = 0.0, correlation = 0.0;
 };
@@ -51,9 +52,9 @@ std::optional<TorqueLine> FitLine(const TorquePairs& pairs) {
   const double norm = std::sqrt(x.square().sum() * y.square().sum());
   const TorqueLine line{.slope = (x * y).sum() / x.square().sum(),
                         .correlation = norm > 0.0 ? (x * y).sum() / norm : 0.0};
-  // Neither masses nor friction turn torques round, nor does a weight that is aside: it adds a
-  // constant, or something that does not follow statics. But where large loads nearly balance
-  // each other, what statics leaves of them may be wrong altogether.
+  // Neither masses nor friction reverse torques, nor does a displaced weight, which adds a constant
+  // or something unrelated to statics. But where large loads nearly balance each other, the
+  // remaining static torque may be entirely wrong.
   const bool follows_reversed = line.correlation < -kFollows;
   const bool reversed = follows_reversed && pairs.expected.size() >= kManyPairs &&
                         line.slope < -kLeastSlope && line.slope > -kMostSlope;
@@ -65,7 +66,7 @@ std::optional<TorqueLine> FitLine(const TorquePairs& pairs) {
 
 bool IsWithin(double ratio, double most) { return ratio < most && ratio * most > 1.0; }
 
-/// By joint, of those that follow statics.
+/// Line of each joint whose sensor follows statics.
 std::vector<std::optional<TorqueLine>> FollowingLines(const std::vector<TorquePairs>& pairs) {
   std::vector<std::optional<TorqueLine>> lines;
   for (const TorquePairs& of : pairs) {
@@ -84,8 +85,8 @@ int NextTowardsRoot(const RobotTree& tree, const std::vector<std::optional<Torqu
   return joint;
 }
 
-/// Whether the sensor of a joint is off by a factor that those next to it on its limb do not have.
-/// They bear much of the same load, so a wrong mass would show in them, too.
+/// Whether a joint's sensor has a factor that its neighbours on the limb do not have. They carry
+/// much of the same load, so that a wrong mass would show in them, too.
 bool IsScaledAlone(const RobotTree& tree, const std::vector<std::optional<TorqueLine>>& lines,
                    int joint) {
   if (!lines[joint] || IsWithin(lines[joint]->slope, kLeastAlone)) return false;
@@ -101,9 +102,9 @@ bool IsScaledAlone(const RobotTree& tree, const std::vector<std::optional<Torque
   return any;
 }
 
-/// Of a joint that carries too little for its slope to be judged as that of others: whether its
-/// torques follow those of statics all the same (nothing: they may), are reversed, or do not follow
-/// them at all. Their slope is told to a tenth by what they scatter about it.
+/// Judges a joint whose load varies too little for the usual rules, if the scatter about its line
+/// determines the slope to a tenth: its torques are reversed, or do not follow statics at all.
+/// Nothing: they may follow.
 std::optional<TorqueContradiction> CertainContradiction(const TorquePairs& pairs) {
   const auto count = static_cast<Eigen::Index>(pairs.expected.size());
   if (pairs.expected.size() < kManyPairs) return std::nullopt;
@@ -136,7 +137,7 @@ std::optional<ContradictoryTorque> Judge(int joint, const TorquePairs& pairs,
       found.kind = TorqueContradiction::kReversed;
       return found;
     }
-    if (line->correlation < kLeastCorrelation) return found;  // unrelated
+    if (line->correlation < kLeastCorrelation) return found;  // kUnrelated, the default
     if (found.slope < kLeastSlope || found.slope > kMostSlope || is_scaled_alone) {
       found.kind = TorqueContradiction::kScaled;
       return found;
@@ -152,11 +153,12 @@ std::optional<ContradictoryTorque> Judge(int joint, const TorquePairs& pairs,
   return found;
 }
 
-/// What is left of the measured torques of one joint beside the static ones of another, in the
-/// postures of both, the means apart: squares, and of the first joint's own static torques.
+/// Residuals of the measured torques of one joint with the static torques of another, in the
+/// postures of both, without the means: sum of squares; also with the first joint's own static
+/// torques.
 struct SensorFit {
   double squares = 0.0, own = 0.0;
-  double reversed = 0.0;  ///< beside its own ones with the opposite sign
+  double reversed = 0.0;  ///< with its own static torques of opposite sign
   Eigen::Index count = 0;
 };
 
@@ -183,8 +185,9 @@ SensorFit Beside(const TorquePairs& measured, const TorquePairs& expected) {
           (centred(m) + centred(own)).square().sum(), count};
 }
 
-/// Whether the sensors of two joints are exchanged. Joints of one limb carry much the same load:
-/// two reversed sensors may follow each other's better than their own, but their own reversed best.
+/// Whether the sensors of two joints are exchanged. Joints of one limb carry a similar load: two
+/// reversed sensors may follow each other's statics better than their own, but follow their own
+/// reversed best.
 bool AreExchanged(const TorquePairs& a, const TorquePairs& b) {
   const SensorFit with_b = Beside(a, b);
   const SensorFit with_a = Beside(b, a);
@@ -196,7 +199,7 @@ bool AreExchanged(const TorquePairs& a, const TorquePairs& b) {
   return own > least && left < kLeftOfExchange * own && left < reversed;
 }
 
-/// Whether the sensors all together have the opposite sign of statics.
+/// Whether all sensors together have the opposite sign of statics.
 bool AllReversed(const std::vector<TorquePairs>& pairs) {
   double as_is = 0.0, reversed = 0.0;
   std::size_t sensors = 0;

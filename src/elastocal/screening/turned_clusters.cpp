@@ -13,16 +13,16 @@ namespace elastocal {
 namespace {
 
 constexpr std::size_t kFewestOfTurned = 3;  // markers
-constexpr double kFarFromProject = 0.05;    // m: beyond what a ruler errs by
+constexpr double kFarFromProject = 0.05;    // m: beyond the errors of a ruler
 constexpr double kLeastTurn = std::numbers::pi / 9.0;
-constexpr double kLeftByTurn = 0.3;  // of the distance from the project
+constexpr double kLeftByTurn = 0.3;  // share of the distance from the project
 
-/// Places of the markers of a cluster in the frame of the joint that carries them, m.
+/// Positions of the markers of a cluster in the frame of the joint that carries them, m.
 struct PlacesOnJoint {
   Eigen::Matrix3Xd project, estimated;
 };
 
-/// Estimated positions of all markers on their links, less those of the project, m.
+/// Estimated positions of all markers on their links minus those of the project, m.
 Eigen::Matrix3Xd MarkerErrors(const CalibrationResult& fit) {
   Eigen::Matrix3Xd errors = Eigen::Matrix3Xd::Zero(3, fit.model.marker_count());
   for (int p = 0; p < fit.model.parameter_count(); ++p) {
@@ -47,7 +47,7 @@ PlacesOnJoint PlacesOf(const CalibrationResult& fit, const std::vector<int>& mar
   return places;
 }
 
-/// The turn about the axis that brings the places of the project nearest to the estimated ones.
+/// The rotation about the axis that brings the project's positions nearest to the estimated ones.
 double BestTurn(const PlacesOnJoint& places, const Eigen::Vector3d& axis) {
   double along = 0.0, across = 0.0;
   for (Eigen::Index k = 0; k < places.project.cols(); ++k) {
@@ -62,7 +62,7 @@ double RmsDistance(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   return (a - b).norm() / std::sqrt(static_cast<double>(a.cols()));
 }
 
-/// Whether a marker on another body is beyond the joint: then it tells the joint's zero.
+/// Whether a marker on another body is beyond the joint, and so determines the joint's zero.
 bool IsToldBeyond(const ErrorModel& model, int joint) {
   const RobotTree& tree = model.tree;
   return std::ranges::any_of(model.markers, [&](const Marker& marker) {

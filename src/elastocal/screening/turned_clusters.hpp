@@ -9,23 +9,24 @@
 
 namespace elastocal {
 
-/// A cluster whose markers were estimated where the project has them, but turned about the axis of
+/// A cluster whose estimated marker positions are those of the project, rotated about the axis of
 /// the joint that carries them.
 struct TurnedCluster {
   std::string cluster, joint;
-  double angle = 0.0;      ///< by which they are turned, rad
-  double displaced = 0.0;  ///< rms distance from where the project has them, m
+  double angle = 0.0;      ///< rotation, rad
+  double displaced = 0.0;  ///< rms distance from the positions in the project, m
 };
 
-/// Clusters of three markers or more that are 50 mm and more from where the project has them (rms),
-/// of which a turn by 20 degrees or more about their joint's axis leaves 0.3 at most. The joint's
-/// zero is another one then, or the project's places are: the markers of the last link of a limb
-/// fit either way. Where markers beyond the cluster's link tell the zero, nothing is said.
+/// Finds clusters of three markers or more that are more than 50 mm from their positions in the
+/// project (rms), if a rotation by at least 20 degrees about their revolute joint's axis leaves at
+/// most 0.3 of the distance. Either the joint's zero or the project's positions are different:
+/// markers of the last link of a limb fit both. If markers beyond the cluster's link determine the
+/// zero, nothing is returned.
 std::vector<TurnedCluster> FindTurnedClusters(const CalibrationResult& fit,
                                               const std::vector<LabelCluster>& clusters);
 
-/// "cluster LHAND: its markers are 212 mm from where the project has them, as if turned by 180
-/// degrees about the axis of wrist_joint. ..."
+/// Text such as "cluster LHAND: its markers are 212 mm from where the project has them, as if
+/// turned by 180 degrees about the axis of wrist_joint. ...".
 std::string Describe(const TurnedCluster& found);
 
 }  // namespace elastocal

@@ -16,12 +16,13 @@ constexpr std::size_t kFewestTorqueSensors = 3;
 constexpr Eigen::Index kFewestMeasured = 10;  // postures of a sensor that takes part
 constexpr double kFarFromStated = 30.0 * M_PI / 180.0;
 constexpr double kOppositeUp = 150.0 * M_PI / 180.0;
-constexpr double kLeftOfStatedUp = 0.25;   // of the squares
-constexpr double kMostTorqueFactor = 2.0;  // of all sensors, or its inverse: else another mistake
-constexpr double kCosineAlong = 0.94;      // cosine of 20 degrees
+constexpr double kLeftOfStatedUp = 0.25;  // share of the squares
+// Common factor of all sensors, or its inverse: beyond, it is another mistake.
+constexpr double kMostTorqueFactor = 2.0;
+constexpr double kCosineAlong = 0.94;  // cosine of 20 degrees
 
-/// Torques of one sensor, and what each component of a direction up would make them, the means
-/// apart.
+/// Torques of one sensor, and those that each component of the up direction would cause, without
+/// the means.
 struct TorquesByUp {
   Eigen::MatrixX3d by_up;  // N.m
   Eigen::VectorXd measured;

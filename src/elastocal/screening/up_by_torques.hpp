@@ -8,25 +8,27 @@
 
 namespace elastocal {
 
-/// Another direction that points up by the torques of the robot's sensors.
+/// A direction of up, by torque sensors, that differs from the stated one.
 struct UpByTorques {
   Eigen::Vector3d up = Eigen::Vector3d::Zero();  ///< of length 1, in the frame of the recording
-  double angle = 0.0;                            ///< between it and the stated one, rad
+  double angle = 0.0;                            ///< angle between it and the stated direction, rad
   double left =
-      0.0;  ///< rms of measured less static torques with it, N.m, each sensor's mean apart
-  double stated = 0.0;  ///< the same with the stated one
+      /// Rms of measured minus static torques with `up`, without the mean of each sensor, N.m.
+      0.0;
+  double stated = 0.0;  ///< the same with the stated direction
 };
 
-/// Whether the torque sensors of a robot whose root link is held in all trials show that another
-/// direction is up. Static torques are linear in gravity, so that its direction is estimated from
-/// all sensors together, with a bias of each. It is another one than stated where it is 30 degrees
-/// off or more and leaves less than a quarter of the squares: errors of masses are shared by both.
-/// Nothing with fewer than three sensors or ten postures. The opposite direction (150 degrees and
-/// more) is as well the opposite sign of all sensors, which FindContradictoryTorques names.
+/// Finds out whether torque sensors show another direction of up than stated, for a robot whose
+/// root link is held in all trials. Static torques are linear in gravity, so that its direction is
+/// estimated from all sensors together, with a bias of each. It contradicts the stated one if it is
+/// at least 30 degrees off and leaves less than a quarter of the squares; errors of masses affect
+/// both alike. Nothing with fewer than three sensors or ten postures. The opposite direction (150
+/// degrees or more) may as well be the opposite sign of all sensors, which FindContradictoryTorques
+/// names.
 std::optional<UpByTorques> FindUpByTorques(const ErrorModel& model, const Recording& recording,
                                            double slip_m);
 
-/// "`up` in experiment.yaml is wrong: by 15 torque sensors, x points up ..."
+/// Text such as "`up` in experiment.yaml is wrong: by 15 torque sensors, x points up ...".
 std::string Describe(const UpByTorques& found);
 
 }  // namespace elastocal

@@ -14,7 +14,7 @@ namespace {
 constexpr double kMostTilt = 50.0 * M_PI / 180.0;
 constexpr double kStandingTilt = 30.0 * M_PI / 180.0;
 
-/// Directions from the middle of the feet to the centre of mass, in the frame of the recording.
+/// Directions from the centre of the feet to the centre of mass, in the frame of the recording.
 std::vector<Eigen::Vector3d> WaysUp(const ErrorModel& model, const Recording& recording) {
   const Placement placement = RegisterPlacement(model, recording, 1.0);
   const double total = TotalMass(model.tree);
@@ -35,7 +35,7 @@ std::vector<Eigen::Vector3d> WaysUp(const ErrorModel& model, const Recording& re
   return ways;
 }
 
-/// Median angle of the ways against a direction.
+/// Median angle between these directions and `up`.
 double Tilt(const std::vector<Eigen::Vector3d>& ways, const Eigen::Vector3d& up) {
   Eigen::VectorXd angles(static_cast<Eigen::Index>(ways.size()));
   for (std::size_t i = 0; i < ways.size(); ++i) {

@@ -17,7 +17,8 @@
 namespace elastocal {
 namespace {
 
-/// The robot's differences, if the markers on links where they are the same have not moved.
+/// Differences of the robot's parameters, under the condition that the markers of links marked
+/// `same` have not moved.
 Differences OfRobot(const PairedEstimates& pair, const std::vector<LinkMarkers>& links) {
   return GivenNone(pair.differences, pair.robot, RowsOfUnmoved(pair.markers, links));
 }
@@ -32,7 +33,7 @@ void SetDifference(const Differences& all, int i, ParameterDifference& one) {
   one.p = StudentTwoSidedTail(one.difference / one.sd, one.degrees_of_freedom);
 }
 
-/// A joint's test without correlations, which holds whatever they are.
+/// Test of a joint without correlations (Bonferroni), which holds for any correlation.
 DifferenceTest TestBySmallest(const std::vector<ParameterDifference>& parameters,
                               const std::vector<int>& which) {
   DifferenceTest test;
@@ -72,7 +73,7 @@ std::vector<JointDifference> GroupByJoint(const std::vector<ParameterDifference>
   return joints;
 }
 
-/// Adjusts p values for the number of joints, and puts the most significant joint first.
+/// Corrects p values for the number of joints and sorts the joints, the most significant first.
 void JudgeJoints(double level, std::vector<JointDifference>& joints) {
   std::vector<double> p;
   for (const JointDifference& joint : joints) p.push_back(joint.test.p);
@@ -88,7 +89,7 @@ void JudgeJoints(double level, std::vector<JointDifference>& joints) {
                    });
 }
 
-/// Joints of which one alone would explain all differences.
+/// Joints of which one alone explains all differences.
 std::vector<std::string> FindSuspects(const Differences& all,
                                       const std::vector<JointDifference>& joints, double level) {
   const std::vector<int> everything = AllOf(static_cast<std::size_t>(all.values.size()));
@@ -115,7 +116,7 @@ std::vector<JointDifference> TestJoints(const Differences& all, double level,
   return joints;
 }
 
-/// What the differences of the robot say.
+/// Tests of the joints and of everything together.
 struct Findings {
   std::vector<JointDifference> joints;
   DifferenceTest overall;
@@ -133,7 +134,7 @@ int CountMoved(const std::vector<JointDifference>& joints) {
   return static_cast<int>(std::ranges::count_if(joints, &JointDifference::moved));
 }
 
-/// Fills in the tests of joints and everything together.
+/// Tests each joint and everything together, and stores the results.
 void JudgeRobot(const PairedEstimates& pair, double level, CalibrationComparison& comparison) {
   const Differences all = OfRobot(pair, comparison.markers);
   for (std::size_t i = 0; i < comparison.parameters.size(); ++i) {
@@ -150,9 +151,10 @@ void JudgeRobot(const PairedEstimates& pair, double level, CalibrationComparison
   }
 }
 
-/// Leaves the markers of one link after another open, which may have moved as one piece. Where a
-/// joint is then no longer accused, it names the link beside it. Unless a single joint is, one that
-/// explains all that has changed is taken to have moved.
+/// Leaves out the condition on the markers of one link after another, since they may have moved as
+/// one piece. If a joint is then no longer significant, the link is added to its `or_markers`. If
+/// the link explains all differences and not exactly one joint is significant, its markers are
+/// taken to have moved.
 void LeaveLinksOpen(const PairedEstimates& pair, double level, CalibrationComparison& comparison) {
   for (std::size_t k = 0; k < comparison.markers.size() && comparison.changed; ++k) {
     if (!comparison.markers[k].same) continue;
@@ -172,7 +174,7 @@ void LeaveLinksOpen(const PairedEstimates& pair, double level, CalibrationCompar
   }
 }
 
-/// Fills in all tests.
+/// Decides which markers moved, and fills in all tests.
 void Judge(const PairedEstimates& pair, double level, CalibrationComparison& comparison) {
   FindUnmovedMarkers(pair.differences, pair.markers, level, comparison.markers);
   JudgeRobot(pair, level, comparison);
@@ -191,7 +193,7 @@ void CheckSameRobot(const CalibrationEstimate& a, const CalibrationEstimate& b) 
                    "joints on it; two calibrations with one gauge were expected");
 }
 
-/// The names of parameters, and of many the first few.
+/// The names of parameters; of many only the first.
 std::string NamesOf(const std::vector<FixedParameter>& parameters) {
   constexpr std::size_t kMost = 8;
   std::string names;
@@ -202,7 +204,7 @@ std::string NamesOf(const std::vector<FixedParameter>& parameters) {
   return names + " and " + std::to_string(parameters.size() - kMost) + " more";
 }
 
-/// Says what one side alone estimates.
+/// Adds a warning that names the parameters that one side alone estimates.
 void AddModelWarning(const std::string& side, const std::string& other,
                      const std::vector<FixedParameter>& fixed, CalibrationComparison& comparison) {
   if (fixed.empty()) return;
@@ -238,7 +240,7 @@ bool HasLoad(const std::vector<FixedParameter>& parameters) {
                              [](const FixedParameter& one) { return IsLoad(one.name); });
 }
 
-/// Takes those away that mean nothing under what both models have.
+/// Removes comparisons that have no meaning under the common model.
 void DropIncomparable(const CalibrationEstimate& a, const CalibrationEstimate& b, bool other_loads,
                       CommonParameters& common) {
   std::erase_if(common.common, [&](const CommonParameter& one) {

@@ -17,12 +17,12 @@
 namespace elastocal {
 namespace {
 
-/// What a parameter is of its owner: the part of its name after the last dot.
+/// Quantity of a parameter: the part of its name after the last dot.
 std::string QuantityName(const std::string& parameter) {
   return parameter.substr(parameter.rfind('.') + 1);
 }
 
-/// The joints whose geometry a calibration has.
+/// Joints of which a calibration has geometric parameters.
 std::set<std::string> JointsOf(const CalibrationEstimate& estimate) {
   using Kind = ParameterKind;
   constexpr std::array kGeometry = {Kind::kTheta, Kind::kR,    Kind::kD,    Kind::kB,
@@ -43,21 +43,21 @@ bool IsCauseOfNoJoint(const std::string& name) {
   return IsLoad(name) || name.starts_with("waist.");
 }
 
-/// By how much the variance of the noise that a fit finds grows, if `count` parameters are fixed at
-/// a place that costs `squares` in its weighted sum of squares.
+/// Factor by which the estimated variance of the noise grows if `count` parameters are fixed at
+/// values that raise the weighted sum of squares by `squares`.
 double MoreNoise(const CalibrationEstimate& estimate, double squares, Eigen::Index count) {
   const double freedom = StudentDegreesOfFreedom(0.975, estimate.interval_factor);
   if (!std::isfinite(freedom)) return 1.0;  // the noise is known
   return std::max(1.0, (freedom + squares) / (freedom + static_cast<double>(count)));
 }
 
-/// Rows of a covariance: those of the fixed parameters, with what these change by, and the others.
+/// Rows of a covariance: the fixed parameters with the change of their values, and the others.
 struct Rows {
   std::vector<int> fixed, others;
   Eigen::VectorXd step;
 };
 
-/// Throws InputError where a fixed parameter has no row.
+/// Finds the rows. Throws InputError where a fixed parameter has none.
 Rows FindRows(const CalibrationEstimate& estimate, const std::vector<FixedParameter>& fixed) {
   std::map<std::string, double> values, steps;
   for (const ParameterEstimate& one : estimate.parameters) values.emplace(one.name, one.value);
@@ -78,11 +78,11 @@ Rows FindRows(const CalibrationEstimate& estimate, const std::vector<FixedParame
                    "'");
 }
 
-/// The conditional normal distribution, springs of any sign.
+/// Conditional normal distribution; compliances may become negative.
 CalibrationEstimate ConditionedOnce(const CalibrationEstimate& estimate,
                                     const std::vector<FixedParameter>& fixed) {
   const Rows rows = FindRows(estimate, fixed);
-  // In units of standard deviations, as the parameters have different units.
+  // In units of standard deviations, because the parameters have different units.
   const Eigen::MatrixXd& S = estimate.covariance;
   const Eigen::VectorXd per_sd = S.diagonal()(rows.fixed).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd across = S(rows.others, rows.fixed) * per_sd.asDiagonal();

@@ -30,7 +30,7 @@ DataInformation InformationOfData(const CalibrationResult& estimate,
   const double widening = std::max(1.0, estimate.posterior.cluster_factor);
   data.information =
       data.unit.asDiagonal() * estimate.posterior.data_information(at, at) * data.unit.asDiagonal();
-  // At the estimate the gradient of the data is that of what was known before, turned round.
+  // At the estimate the gradient of the log-likelihood is the negative gradient of the prior.
   const Eigen::VectorXd x = estimate.delta(data.parameters).cwiseQuotient(data.unit);
   const Eigen::MatrixXd before =
       InverseOfInformation(CovarianceBefore(estimate, data, fitted_with));
@@ -74,8 +74,8 @@ double LogEvidence(const DataInformation& data, const Eigen::VectorXd& mean,
   const auto identity = Eigen::MatrixXd::Identity(mean.size(), mean.size());
   const Eigen::LLT<Eigen::MatrixXd> told(identity + L.transpose() * data.information * L);
   const double log_det = 2.0 * told.matrixLLT().diagonal().array().log().sum();
-  // Beside the part at the mean: log p(data | x = mean) = vector' mean - mean' information mean
-  // / 2.
+  // Without the part at the mean: log p(data | x = mean) = vector' mean - mean' information mean /
+  // 2.
   const double at_mean = mean.dot(data.vector) - 0.5 * mean.dot(data.information * mean);
   return at_mean + 0.5 * (score.dot(told.solve(score)) - log_det);
 }

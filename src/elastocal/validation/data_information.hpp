@@ -9,32 +9,33 @@
 
 namespace elastocal {
 
-/// What the data of a recording say of its model's parameters x, to first order and whatever was
-/// known beforehand: log p(data | x) = vector' x - x' information x / 2 + a constant. Poses are
-/// integrated out; compliances that lie at their bound stay there and are left out.
+/// Log-likelihood of a recording in its model's parameters x, to first order and without the prior:
+/// log p(data | x) = vector' x - x' information x / 2 + constant. Poses are integrated out.
+/// Compliances at their bound stay there and are left out.
 struct DataInformation {
   std::vector<int> parameters;  ///< indices into the model's
-  Eigen::VectorXd unit;         ///< of each, in SI (ParameterScale); x is in these
+  Eigen::VectorXd unit;         ///< unit of each in SI (ParameterScale); x is in these units
   Eigen::MatrixXd information;
   Eigen::VectorXd vector;
 };
 
-/// `fitted_with`: the earlier estimate that `estimate` was fitted with. What the residuals of a
-/// posture share makes the information less (Posterior::cluster_factor).
+/// Computes the log-likelihood from a fit. `fitted_with` is the earlier estimate that the fit used
+/// as prior. The information is divided by the cluster factor (Posterior::cluster_factor), because
+/// residuals of a posture are correlated.
 DataInformation InformationOfData(const CalibrationResult& estimate,
                                   const EarlierEstimate& fitted_with);
 
-/// Covariance of the same parameters in the same units before the data: the prior's, and of those
-/// that an earlier estimate knows, that one's.
+/// Covariance of the same parameters, in the same units, before the data: that of the earlier
+/// estimate for parameters that it knows, and of the prior for the others.
 Eigen::MatrixXd CovarianceBefore(const CalibrationResult& estimate, const DataInformation& data,
                                  const EarlierEstimate& earlier);
 
-/// Their mean before the data.
+/// Mean of the same parameters before the data.
 Eigen::VectorXd MeanBefore(const CalibrationResult& estimate, const DataInformation& data,
                            const EarlierEstimate& earlier);
 
-/// Logarithm of p(data | N(mean, covariance) before them), in the units of the data, less a
-/// constant that is the same for all.
+/// Logarithm of p(data) if the parameters are distributed as N(mean, covariance) before the data,
+/// in the units of the data. A constant that does not depend on mean and covariance is left out.
 double LogEvidence(const DataInformation& data, const Eigen::VectorXd& mean,
                    const Eigen::MatrixXd& covariance);
 

@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-constexpr int kRobots = 20;  // drawn from the prior
+constexpr int kRobots = 20;  // robots drawn from the prior
 constexpr int kMostPostures = 50;
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-/// The estimate of a robot that was never calibrated, from the data alone.
+/// Estimate from the data and the prior of a new robot, without the earlier calibration.
 CalibrationEstimate EstimateOfData(const CalibrationResult& estimate,
                                    const EarlierEstimate& fitted_with) {
   const ErrorModel& model = estimate.model;

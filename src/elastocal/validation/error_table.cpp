@@ -9,7 +9,8 @@
 namespace elastocal {
 namespace {
 
-/// Metrics of both together, without those of single markers, which may differ between trials.
+/// Metrics over both sets of observations. Those of single markers are left out, because markers
+/// may differ between trials.
 ErrorMetrics Pooled(const ErrorMetrics& a, const ErrorMetrics& b) {
   const auto squares = [](const ErrorMetrics& metrics) {
     return metrics.observations > 0 ? metrics.observations * std::pow(metrics.rmse_3d, 2) : 0.0;

@@ -17,12 +17,12 @@
 namespace elastocal {
 namespace {
 
-constexpr int kTrainingPostures = 400;  // that place markers
-constexpr int kRefits = 3;              // of markers: placing feet and markers takes turns
-constexpr double kMoves = 0.1;          // of a joint's largest displacement
+constexpr int kTrainingPostures = 400;  // training postures that place markers
+constexpr int kRefits = 3;      // rounds of refitting: placing feet and fitting markers alternate
+constexpr double kMoves = 0.1;  // share of a joint's largest displacement
 constexpr double kMeasuredWrong = 6.0;  // times the median distance
 
-/// Whether what is exported has the parameter.
+/// Whether an export contains the parameter.
 bool IsCarried(const Parameter& parameter, const GainOptions& gains) {
   if (gains.nominal.contains(OwnerName(parameter.name))) return false;
   if (parameter.kind == ParameterKind::kCorrection ||
@@ -42,13 +42,13 @@ Recording EvenlyChosen(const Recording& recording) {
   return SelectPostures(recording, chosen);
 }
 
-/// A robot with errors, and where its markers and its waist are.
+/// A model with errors, markers and the waist's nominal pose.
 struct PlacedErrors {
   ErrorModel model;
   Eigen::VectorXd delta;
 };
 
-/// A split, ready for the displacements of its markers by changes of the errors.
+/// Computes displacements of a split's held-out markers caused by changes of the errors.
 class SplitDisplacements {
  public:
   SplitDisplacements(const HeldOutSplit& split, const CalibrationOptions& options,
@@ -63,11 +63,11 @@ class SplitDisplacements {
     held_out_before_ = HeldOutPositions(from_, before_.placement);
   }
 
-  /// The measured less the predicted positions of the held-out markers, m; NaN where unknown.
+  /// Measured minus predicted positions of the held-out markers, m; NaN where unknown.
   Eigen::MatrixXd Residuals() const { return split_.held_out.markers - held_out_before_; }
 
-  /// By how much the held-out markers move, m, where the errors become `delta`, markers and waist
-  /// refitted to the training postures.
+  /// Displacement of the held-out markers, m, where the errors become `delta` and markers and waist
+  /// are refitted to the training postures.
   Eigen::MatrixXd To(const Eigen::VectorXd& delta) const {
     PlacedErrors to{from_.model, delta};
     Prediction now;
@@ -85,7 +85,8 @@ class SplitDisplacements {
         .positions;
   }
 
-  /// Displacement of each marker by a metre along its own axes, in a posture: 3 x 3 each.
+  /// Displacement of each marker in a posture by one metre along each axis of its link's frame: 3 x
+  /// 3 each.
   std::vector<Eigen::Matrix3d> MarkerAxes(const PlacedErrors& errors, const Placement& placement,
                                           int posture) const {
     Geometry geometry = ApplyErrors(errors.model, errors.delta);
@@ -110,8 +111,8 @@ class SplitDisplacements {
     return axes;
   }
 
-  /// Moves markers, but for known ones, and, of a table of postures, the waist so that the training
-  /// postures are predicted as before: one step of Gauss and Newton, markers eliminated.
+  /// Displaces the markers (without known ones) and, in a posture table, the waist so that the
+  /// training postures are predicted as before: one Gauss-Newton step, markers eliminated.
   void Refit(const Prediction& now, PlacedErrors& to) const {
     const int markers = training_.marker_count();
     const bool with_waist = !HasPoseByPosture(training_);
@@ -148,7 +149,7 @@ class SplitDisplacements {
         normal -= by_waist[index].transpose() * by_waist[index] / count[m];
         gradient -= by_waist[index].transpose() * pull[index] / count[m];
       }
-      // Directions that the markers take up by themselves are left to them.
+      // Regularises directions of the waist that the markers alone can explain.
       normal.diagonal().array() += 1e-9 * scale;
       twist = normal.ldlt().solve(gradient);
       Transform moved = Transform::Identity();
@@ -174,12 +175,12 @@ class SplitDisplacements {
   Eigen::MatrixXd held_out_before_;
 };
 
-/// The errors that a split judges.
+/// The errors that a split exports.
 const Eigen::VectorXd& Exported(const HeldOutSplit& split) {
   return split.exported.size() > 0 ? split.exported : split.delta;
 }
 
-/// Joints and legs with errors that are deployed, in the order of the model.
+/// Joints and legs with exported errors, in the order of the model.
 std::vector<std::string> OwnersWithErrors(const std::vector<HeldOutSplit>& splits,
                                           const GainOptions& gains) {
   std::vector<std::string> owners;
@@ -195,16 +196,16 @@ std::vector<std::string> OwnersWithErrors(const std::vector<HeldOutSplit>& split
   return owners;
 }
 
-/// Held-out observations, one after another: three numbers each.
+/// Held-out observations, one a column.
 using Observations = Eigen::Matrix3Xd;
 
-/// What is left of the held-out observations with every joint corrected, and what each joint adds
-/// to it where it returns to nominal.
+/// Residuals of the held-out observations with every joint corrected, and displacements by each
+/// joint where it returns to nominal.
 struct HeldOutErrors {
-  Observations estimate;  ///< with the estimate itself, whatever an export carries of it
+  Observations estimate;  ///< residual with the whole estimate, also what an export does not carry
   Observations residual;
   std::vector<Observations> by_owner;
-  Observations by_all;  ///< of all joints together
+  Observations by_all;  ///< displacement by all joints together
   int left_out = 0;
 };
 
@@ -212,7 +213,7 @@ double Rms(const Observations& observations) {
   return std::sqrt(observations.colwise().squaredNorm().mean());
 }
 
-/// The columns of postures x 3 markers where `mask` is set, below those of `all`.
+/// Appends the columns of postures x 3 markers where `mask` is set.
 void Append(const Eigen::MatrixXd& rows, const ObservationMask& mask, Observations& all) {
   Eigen::Index next = all.cols();
   all.conservativeResize(3, next + mask.count());
@@ -240,7 +241,7 @@ void AddSplit(const HeldOutSplit& split, const CalibrationOptions& options,
   ObservationMask mask(residuals.rows(), residuals.cols() / 3);
   for (Eigen::Index i = 0; i < mask.rows(); ++i) {
     for (Eigen::Index m = 0; m < mask.cols(); ++m) {
-      // A marker without training data has no place.
+      // A marker without training data has no position.
       mask(i, m) = seen.col(m).any() && residuals.block<1, 3>(i, 3 * m).allFinite();
     }
   }
@@ -257,7 +258,7 @@ void AddSplit(const HeldOutSplit& split, const CalibrationOptions& options,
   }
 }
 
-/// Leaves out observations that no robot explains.
+/// Leaves out observations further than kMeasuredWrong times the median from the estimate.
 void LeaveOutWrongOnes(HeldOutErrors& errors) {
   std::vector<double> distances(static_cast<std::size_t>(errors.estimate.cols()));
   for (std::size_t i = 0; i < distances.size(); ++i) {
@@ -277,7 +278,7 @@ void LeaveOutWrongOnes(HeldOutErrors& errors) {
   for (Observations& one : errors.by_owner) keep(one);
 }
 
-/// Observations that a joint moves.
+/// Indices of the observations that a joint moves.
 std::vector<Eigen::Index> Moved(const Observations& displacement) {
   const Eigen::VectorXd sizes = displacement.colwise().norm();
   const double least = std::max(kMoves * sizes.maxCoeff(), 1e-12);
@@ -288,7 +289,7 @@ std::vector<Eigen::Index> Moved(const Observations& displacement) {
   return moved;
 }
 
-/// Gain of a joint beside what is left of the observations.
+/// Computes the gain of a joint from the present residuals.
 void TakeGain(const Observations& residual, const Observations& displacement, JointGain& joint) {
   const std::vector<Eigen::Index> moved = Moved(displacement);
   joint.observations = static_cast<int>(moved.size());

@@ -10,7 +10,7 @@
 
 namespace elastocal {
 
-/// Marker errors, by both of the quantities that the literature calls "RMSE", m.
+/// Errors of marker positions, m, by both quantities that the literature calls "RMSE".
 struct ErrorMetrics {
   double rmse_3d = 0.0;          ///< RMS distance between measured and predicted positions
   double rmse_coordinate = 0.0;  ///< RMS difference of a coordinate: rmse_3d / sqrt(3)
@@ -20,7 +20,7 @@ struct ErrorMetrics {
 };
 
 /// Metrics of `distances` (postures x markers, as ResidualNorms gives them, m) over the
-/// observations in `mask` that were predicted (finite distances). NaN if there are none.
+/// observations in `mask` whose distance is finite. NaN if there are none.
 ErrorMetrics ComputeMetrics(const Eigen::MatrixXd& distances, const ObservationMask& mask);
 
 /// A 95 % interval of an RMSE, m.
@@ -28,9 +28,10 @@ struct RmseInterval {
   double low = 0.0, high = 0.0;
 };
 
-/// Where the 3-D RMSE of many such postures lies, by the scatter of the squares from one unit to
-/// the next, as Student's t on a logarithmic scale. `distances` as above, NaN where not observed;
-/// `unit_of`: of each posture, those of a unit being much alike. Nothing for fewer than five units.
+/// 95 % interval of the 3-D RMSE over many postures like these, from the scatter of the squares
+/// between units (Student's t on a logarithmic scale). `distances` as in ComputeMetrics, NaN where
+/// not observed. `unit_of` is the unit of each posture; postures of one unit are much alike.
+/// Nothing for fewer than five units.
 std::optional<RmseInterval> IntervalOfRmse(const Eigen::MatrixXd& distances,
                                            const std::vector<int>& unit_of);
 

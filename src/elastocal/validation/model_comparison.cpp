@@ -17,14 +17,14 @@
 namespace elastocal {
 namespace {
 
-constexpr double kSamePosture = 0.02;  // rad or m, of every joint
-constexpr double kStretch_s = 5.0;     // of a motion, that is left out together
+constexpr double kSamePosture = 0.02;  // largest difference of any joint, rad or m
+constexpr double kStretch_s = 5.0;  // duration of the parts of a motion that are left out together
 
 void Unite(int a, int b, std::vector<int>& units) {
   if (a != b) std::replace(units.begin(), units.end(), std::max(a, b), std::min(a, b));
 }
 
-/// Moments of a motion that are of one stretch of it.
+/// Unites the moments of each stretch of a motion.
 void UniteMoments(const Recording& recording, std::vector<int>& units) {
   const std::vector<int> motion = MotionOfPostures(recording);
   double begin = recording.time_s.size() > 0 ? recording.time_s[0] : 0.0;
@@ -37,7 +37,7 @@ void UniteMoments(const Recording& recording, std::vector<int>& units) {
   }
 }
 
-/// None of a table of postures.
+/// Recording folder of each posture; empty for a posture table.
 std::vector<int> SessionOfPosture(const Recording& recording) {
   std::vector<int> sessions;
   for (const int trial : recording.trial) sessions.push_back(recording.trials[trial].session);
@@ -55,12 +55,13 @@ const char* NameOfUnits(FoldUnit unit) {
   }
 }
 
-/// The unit of each posture: those that are left out together.
+/// Unit of each posture: postures of one unit are left out together.
 std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit) {
   if (unit == FoldUnit::kTrial) return recording.trial;
   if (unit == FoldUnit::kSession) return SessionOfPosture(recording);
   const int postures = recording.posture_count();
-  // Nearly equal ones, looked for among neighbours in the order of the sum of their joints.
+  // Nearly equal postures are found among neighbours in the order of the sum of their joint
+  // positions.
   std::vector<int> order(postures), units(postures);
   std::iota(order.begin(), order.end(), 0);
   const Eigen::VectorXd sums = recording.q.rowwise().sum();
@@ -94,7 +95,8 @@ struct FoldResult {
   int unconverged = 0;
 };
 
-/// Of the markers of the whole recording: each is seen as at most one of the fold's in a posture.
+/// Sorts distances by the markers of the whole recording. Several markers of a fold may be one of
+/// these (a knocked cluster), but only one is seen in a posture.
 Eigen::MatrixXd InWholeRecording(const Eigen::MatrixXd& distances, const std::vector<int>& marker,
                                  int marker_count) {
   Eigen::MatrixXd whole = Eigen::MatrixXd::Constant(distances.rows(), marker_count, kNaN);
@@ -108,7 +110,7 @@ Eigen::MatrixXd InWholeRecording(const Eigen::MatrixXd& distances, const std::ve
 void PredictFold(const std::vector<ModelKind>& kinds, const FoldData& fold,
                  const CalibrationOptions& options, FootingBy by, int marker_count,
                  FoldResult& result) {
-  // The largest model decides what is an outlier of the other postures; each model its own weights.
+  // The largest model decides which observations are outliers; each model has its own weights.
   std::optional<Selection> selection;
   std::optional<CalibrationResult> largest;
   const std::vector<ModelKind> possible = ModelKinds(fold.model);
@@ -129,20 +131,20 @@ void PredictFold(const std::vector<ModelKind>& kinds, const FoldData& fold,
     distances =
         Predict(estimate.model, estimate.delta, fold.held_out, options, &estimate.placement, by)
             .distances;
-    // A marker that is in no other fold has no estimated position.
+    // A marker without used observations has no estimated position.
     for (int m = 0; m < fold.model.marker_count(); ++m) {
       if (!estimate.used.col(m).any()) distances.col(m).setConstant(kNaN);
     }
     distances = InWholeRecording(distances, fold.marker, marker_count);
   }
-  for (ModelKind kind : kinds) {  // what the fold's model does not have
+  for (ModelKind kind : kinds) {  // kinds that the fold's model does not have
     Eigen::MatrixXd& distances = result.distances[static_cast<int>(kind)];
     if (distances.size() == 0) distances = result.distances[static_cast<int>(largest->kind)];
   }
 }
 
-/// Observations that a prediction can be judged by: on two feet, and where the root is free, not by
-/// the markers that place it, unless all do.
+/// Observations by which a prediction can be judged. On two feet, and where the root is free, the
+/// markers that place the waist are left out, unless all markers place it.
 ObservationMask Judged(const ErrorModel& model, const Recording& recording, FootingBy by) {
   ObservationMask judged = SeenMask(recording);
   if (!HasPoseByPosture(recording)) return judged;

@@ -19,21 +19,21 @@ using ByModel = std::array<T, kModelKindCount>;
 
 /// The models of paper section 6.1.4 on one recording.
 struct ModelComparison {
-  std::vector<ModelKind> kinds;  ///< those compared; entries of other kinds below have no meaning
+  std::vector<ModelKind> kinds;  ///< models compared; entries of other kinds have no meaning
   ByModel<CalibrationResult> results;
-  ByModel<Prediction> predictions;  ///< of the same recording
+  ByModel<Prediction> predictions;  ///< predictions of the same recording
   ByModel<ErrorMetrics>
       metrics;  ///< of the predictions, over the observations that the largest model kept
   ByModel<ErrorMetrics> metrics_all;  ///< over all observations, outliers included
 
-  /// The largest model, with the most parameters: full, or geometric if nothing is elastic.
+  /// The largest model: full, or geometric if nothing is elastic.
   ModelKind largest_kind() const { return kinds.back(); }
   const CalibrationResult& largest() const { return results[static_cast<int>(largest_kind())]; }
   const ErrorMetrics& largest_metrics() const { return metrics[static_cast<int>(largest_kind())]; }
 };
 
-/// Calibrates the other models beside `largest`, the result of the largest one. That one decides
-/// which observations are outliers, so that all models are judged on the same data.
+/// Calibrates the other models beside `largest`, the result of the largest one, which decides which
+/// observations are outliers. All models are thus judged on the same data.
 ModelComparison CompareModels(CalibrationResult largest, const ErrorModel& model,
                               const Recording& recording, const BaseParameters& base,
                               const CalibrationOptions& options, const Progress& progress = {});
@@ -42,79 +42,85 @@ ModelComparison CompareModels(CalibrationResult largest, const ErrorModel& model
 ModelComparison CompareModels(const ErrorModel& model, const Recording& recording,
                               const BaseParameters& base, const CalibrationOptions& options);
 
-/// What is left out together.
+/// What one fold leaves out as a whole.
 enum class FoldUnit {
-  kPosture,  ///< postures, nearly equal ones and neighbours in a motion together
+  kPosture,  ///< postures; nearly equal ones, and neighbours in a motion, together
   kTrial,    ///< whole trials
   kSession,  ///< all trials of a recording folder
 };
 
+/// How the postures are divided into folds.
 struct FoldOptions {
   int folds = 10;  ///< 2 to the number of units
   FoldUnit unit = FoldUnit::kPosture;
-  std::uint64_t seed = 1;  ///< deals the units to the folds at random
+  std::uint64_t seed = 1;  ///< seed by which the units are distributed to the folds
   int threads = 1;
-  FootingBy by = FootingBy::kAllMarkers;  ///< of the left-out postures
+  FootingBy by = FootingBy::kAllMarkers;  ///< markers that place the feet in the held-out postures
 };
 
-/// `wanted` folds, or as many as there are different postures. Those of a motion
-/// (MotionOfPostures) are left out in stretches of five seconds.
+/// The number of folds: `wanted`, or the number of different postures if that is smaller. Moments
+/// of a motion (MotionOfPostures) are left out in stretches of five seconds.
 int FoldsFor(const Recording& recording, int wanted);
 
-/// The fold of each posture: a random permutation of the units is cut into equal parts. Throws
-/// InputError for a number of folds that the recording does not allow.
+/// The fold of each posture: a random permutation of the units is cut into parts of equal size.
+/// Throws InputError for a number of folds that the recording does not allow.
 std::vector<int> DealFolds(const Recording& recording, const FoldOptions& options);
 
+/// Result of a cross-validation.
 struct CrossValidation {
   int folds = 0;
-  /// Over all held-out observations that could be predicted. In a posture on two feet, the waist's
-  /// own markers are not counted: they place it.
+  /// Errors over all held-out observations that could be predicted. In a posture on two feet, the
+  /// waist's own markers do not count, because they place it.
   ByModel<ErrorMetrics> metrics;
-  /// Over those of them that the estimate from all postures does not call outliers (JudgeWithout).
+  /// Errors over those of them that are no outliers of the estimate from all postures
+  /// (JudgeWithout).
   ByModel<ErrorMetrics> metrics_without_outliers;
-  int unconverged = 0;  ///< fits that did not converge
-  /// Held-out observations that no model could predict: their marker is in no other fold, the waist
-  /// could not be placed, or their cluster was knocked between the other folds' postures around.
+  int unconverged = 0;  ///< number of fits that did not converge
+  /// Number of held-out observations that no model could predict: their marker is in no other fold,
+  /// the waist could not be placed, or their cluster was knocked between the postures of the other
+  /// folds before and after.
   int not_predicted = 0;
-  ByModel<Eigen::MatrixXd> distances;  ///< postures x markers, m; NaN where not counted
-  std::vector<int> unit_of;  ///< of each posture; those of a unit are much alike, or neighbours
+  ByModel<Eigen::MatrixXd> distances;  ///< by model, postures x markers, m; NaN where not counted
+  /// Unit of each posture; postures of a unit are much alike, or neighbours.
+  std::vector<int> unit_of;
 };
 
-/// What a fold is estimated from and judged on.
+/// Data from which a fold is estimated and on which it is judged.
 struct FoldData {
-  ErrorModel model;  ///< as the training postures show the robot
+  ErrorModel model;  ///< model of the robot by the training postures
   BaseParameters base;
   Recording training, held_out;  ///< with the markers of `model`
-  /// By marker of `model`: which of the whole recording it is.
+  /// For each marker of `model`: its index in the whole recording.
   std::vector<int> marker;
 };
 
-/// Decides on a fold, from its training postures alone, what is decided before an estimate. Both
-/// lists are ascending indices of postures. Called from several threads.
+/// Makes the data of a fold. It decides from the training postures alone all that is decided before
+/// an estimate. Both lists are indices of postures, ascending. Called from several threads.
 using MakeFold =
     std::function<FoldData(const std::vector<int>& training, const std::vector<int>& held_out)>;
 
-/// k-fold cross-validation. Every posture is predicted once, by models estimated without it; with
-/// it everything is decided anew that an estimate decides (outliers, priors, noise, footings) and
-/// that `make` does. A kind that a fold's model does not have (it is not elastic) is the largest
-/// that it has. `model`: of the whole recording.
-/// Throws InputError for a number of folds that the recording does not allow.
+/// k-fold cross-validation. Every posture is predicted once, by models that are estimated without
+/// it. Everything that an estimate decides is decided anew in each fold (outliers, priors, noise,
+/// footings), and so is what `make` decides. If a fold's model does not have a kind (it is not
+/// elastic), its largest kind takes that place. `model` is that of the whole recording. Throws
+/// InputError for a number of folds that the recording does not allow.
 CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorModel& model,
                               const Recording& recording, const CalibrationOptions& options,
                               const FoldOptions& folds, const MakeFold& make,
                               const Progress& progress = {});
 
-/// The same with one model for all folds.
+/// As above, with one model for all folds.
 CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorModel& model,
                               const Recording& recording, const BaseParameters& base,
                               const CalibrationOptions& options, const FoldOptions& folds,
                               const Progress& progress = {});
 
-/// Fills `metrics_without_outliers`: over the observations in `used`.
+/// Fills `metrics_without_outliers`: errors over the observations in `used`.
 void JudgeWithout(const ObservationMask& used, const std::vector<ModelKind>& kinds,
                   CrossValidation& validation);
 
-/// With one model for the kinds of a comparison, whose largest model says what is an outlier.
+/// As above, for the kinds of a comparison. Its largest model decides which observations are
+/// outliers.
 CrossValidation CrossValidate(const ModelComparison& comparison, const ErrorModel& model,
                               const Recording& recording, const BaseParameters& base,
                               const CalibrationOptions& options, const FoldOptions& folds,

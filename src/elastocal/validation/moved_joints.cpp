@@ -15,22 +15,23 @@
 namespace elastocal {
 namespace {
 
-constexpr double kTimesPrior = 2.0;  // a change may be larger than what a new robot has
-/// A combination of a joint's parameters counts as told if a change of one standard deviation of
-/// what is expected stands out of the noise by one.
+// Times the prior: changes may be larger than errors of a new robot.
+constexpr double kTimesPrior = 2.0;
+/// Combinations of parameters count as told from this ratio on: expected change over its sd by the
+/// data.
 constexpr double kLeastTold = 1.0;
 constexpr double kKnownFreedom = 1e6;
-/// Logarithm of the odds against a move before the data: in one check of four something has moved.
+/// Logarithm of the odds against a move before the data: in one of four checks something has moved.
 const double kOddsAgainst = std::log(3.0);
-/// By how much the covariance of an earlier calibration may be too small (variance).
+/// Factors on the covariance of the earlier calibration that are tried.
 constexpr double kWidenings[] = {1.0, 2.0, 4.0, 8.0, 16.0};
 
 struct Quantity {
   std::string name;
   ParameterUnit unit;
   bool offset = false;
-  int position = 0;   // among the unknowns
-  double size = 0.0;  // of a change, in units of the unknown
+  int position = 0;   // index among the unknowns
+  double size = 0.0;  // standard deviation of a change, in units of the unknown
 };
 
 struct Candidate {
@@ -38,18 +39,18 @@ struct Candidate {
   std::vector<Quantity> quantities;
 };
 
-/// What some quantities would explain, if they may change.
+/// What the given quantities explain if they may change.
 struct Explanation {
   double squares = 0.0;  // chi-squared of the combinations that are told
   int told = 0;
   double evidence = 0.0;  // logarithm of p(s | changed) over p(s | nothing changed)
   Eigen::VectorXd change;
-  Eigen::MatrixXd covariance;  // of it
-  // Of a single quantity: how large a change is expected to be, and how exactly the data tell it.
+  Eigen::MatrixXd covariance;  // covariance of `change`
+  // For a single quantity: expected size of a change, and standard deviation by the data.
   double size = 0.0, sd = 0.0;
 };
 
-/// What the data say of the unknowns, all in units of `unit_`.
+/// What the data say about changes. All in units of `unit_`.
 class Evidence {
  public:
   Evidence(const CalibrationResult& estimate, const DataInformation& data,
@@ -64,10 +65,10 @@ class Evidence {
   }
 
   const std::vector<Candidate>& candidates() const { return candidates_; }
-  /// Logarithm of p(s | nothing changed), less a constant of the data.
+  /// Logarithm of p(s | nothing changed), without a constant of the data.
   double unchanged() const { return unchanged_; }
 
-  /// The same beside joints that may have changed.
+  /// The same under the condition that these joints may have changed.
   Evidence Beside(const std::vector<std::string>& joints) const {
     Evidence other = *this;
     for (const Candidate& candidate : candidates_) {
@@ -138,7 +139,7 @@ class Evidence {
     }
   }
 
-  /// What the data say of changes beside all that the prior leaves open.
+  /// Removes from information and score what the prior leaves open.
   void Update() {
     const Eigen::MatrixXd covariance =
         InverseOfInformation(information_ + InverseOfInformation(prior_));
@@ -147,14 +148,14 @@ class Evidence {
     left_score_ = score_ - open * score_;
   }
 
-  std::vector<int> parameters_;  // of the model
+  std::vector<int> parameters_;  // indices in the model
   Eigen::VectorXd unit_, score_, left_score_;
   Eigen::MatrixXd information_, prior_, left_;
   std::vector<Candidate> candidates_;
   double unchanged_ = 0.0;
 };
 
-/// Logarithm of the mean of two numbers given by their logarithms.
+/// Logarithm of the mean of two numbers that are given by their logarithms.
 double LogMean(double a, double b) {
   const double most = std::max(a, b);
   return most + std::log(0.5 * std::exp(a - most) + 0.5 * std::exp(b - most));
@@ -168,7 +169,7 @@ DifferenceTest TestOf(const Explanation& explanation, double freedom) {
   return test;
 }
 
-/// Tries a change of the joint's zero alone and of all its parameters.
+/// Judges a joint by a change of its zero alone and by a change of all its parameters.
 JointSuspect Judge(const Evidence& evidence, const Candidate& candidate, double freedom) {
   Candidate offset{.joint = candidate.joint, .quantities = {}};
   std::copy_if(candidate.quantities.begin(), candidate.quantities.end(),
@@ -187,7 +188,7 @@ JointSuspect Judge(const Evidence& evidence, const Candidate& candidate, double 
     suspect.zero_alone = zero.evidence >= best.evidence;
     if (offset.quantities.size() < candidate.quantities.size()) {
       if (test.p < suspect.test.p) suspect.test = test;
-      suspect.test.p = std::min(1.0, 2.0 * suspect.test.p);  // the smaller one of two
+      suspect.test.p = std::min(1.0, 2.0 * suspect.test.p);  // the smaller of two p values
       suspect.log_evidence = LogMean(zero.evidence, best.evidence);
     }
     if (suspect.zero_alone) best = zero;
@@ -202,7 +203,7 @@ JointSuspect Judge(const Evidence& evidence, const Candidate& candidate, double 
   return suspect;
 }
 
-/// All candidates that are not among those found, the most probable first.
+/// Judges all candidates that are not in `moved`, the most probable first.
 std::vector<JointSuspect> JudgeAll(const Evidence& evidence, const std::vector<std::string>& moved,
                                    double freedom) {
   std::vector<JointSuspect> joints;
@@ -231,14 +232,14 @@ std::vector<JointSuspect> JudgeAll(const Evidence& evidence, const std::vector<s
   return joints;
 }
 
-/// The joints that have moved, by what the data say beside the earlier calibration as it is given.
+/// Search for the joints that have moved, for one covariance of the earlier calibration.
 class MoveSearch {
  public:
   MoveSearch(const Evidence& as_calibrated, double freedom, const JointCheckOptions& options)
       : as_calibrated_(as_calibrated),
         freedom_(freedom),
         options_(options),
-        // Each joint is as likely to have moved.
+        // All joints are equally likely to have moved.
         choice_(std::log(static_cast<double>(as_calibrated.candidates().size()))) {}
 
   JointCheck Find() const {
@@ -276,7 +277,7 @@ class MoveSearch {
     return joints;
   }
 
-  /// The most probable joint, beside it the next one, until none is significant.
+  /// Adds the most probable significant joint, beside it the next one, until none is significant.
   std::vector<std::string> Forward() const {
     std::vector<std::string> found;
     while (true) {
@@ -288,7 +289,7 @@ class MoveSearch {
     }
   }
 
-  /// Leaves out what is not significant beside the others: it was taken for one of them.
+  /// Removes joints that are not significant beside the others, in whose place they were found.
   std::vector<std::string> WithoutNeedless(std::vector<std::string> found) const {
     for (std::size_t i = 0; i < found.size();) {
       const std::vector<std::string> others = Others(found, found[i]);
@@ -315,7 +316,7 @@ class MoveSearch {
     return evidence;
   }
 
-  /// Those that make up the certainty.
+  /// Adds the most probable joints whose probabilities sum up to the certainty.
   void AddSuspects(const std::vector<JointSuspect>& joints,
                    std::vector<std::string>& suspects) const {
     double sum = 0.0;
@@ -338,7 +339,7 @@ double SmallestChange(double sd, double size, std::size_t joints) {
   constexpr double kNineInTen = 1.28;  // standard deviations
   const double told = size * size / (sd * sd);
   if (!(told >= kLeastTold)) return std::numeric_limits<double>::infinity();
-  // The evidence z^2 told / (1 + told) / 2 - log(1 + told) / 2, of one of two ways to change.
+  // Solves for z: evidence z^2 told / (1 + told) / 2 - log(1 + told) / 2, of one of two changes.
   const double needed = std::log(2.0 * static_cast<double>(joints)) + kOddsAgainst;
   const double z = std::sqrt((2.0 * needed + std::log1p(told)) * (1.0 + told) / told);
   return sd * (z + kNineInTen);
@@ -380,7 +381,7 @@ JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstim
   const double freedom = t < 1.9600001 ? kKnownFreedom : StudentDegreesOfFreedom(0.975, t);
   const DataInformation data = InformationOfData(estimate, fitted_with);
   JointCheck best;
-  double unchanged = 0.0;  // logarithm of p(data | nothing has moved, as sure as it is)
+  double unchanged = 0.0;  // logarithm of p(data | nothing has moved, covariance times 1)
   for (const double widened : kWidenings) {
     EarlierEstimate wider = earlier;
     wider.covariance *= widened;
@@ -388,7 +389,7 @@ JointCheck FindMovedJoints(const CalibrationResult& estimate, const EarlierEstim
     if (widened == 1.0) unchanged = evidence.unchanged();
     JointCheck check = MoveSearch(evidence, freedom, options).Find();
     check.widened = widened;
-    // Standard deviations that are too small by a factor of two are half as likely beforehand.
+    // A covariance four times as large is half as likely beforehand.
     check.log_evidence += evidence.unchanged() - unchanged - 0.5 * std::log(widened);
     if (widened > 1.0 && !(check.log_evidence > best.log_evidence)) continue;
     best = std::move(check);

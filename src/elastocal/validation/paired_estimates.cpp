@@ -16,7 +16,8 @@ double DegreesOfFreedom(const CalibrationEstimate& estimate) {
   return StudentDegreesOfFreedom(0.975, estimate.interval_factor);
 }
 
-/// Covariance of some parameters of an estimate; without a file of it, of their variances alone.
+/// Covariance of some parameters of an estimate: from its file, or else diagonal with their
+/// variances.
 Eigen::MatrixXd CovarianceOf(const CalibrationEstimate& estimate, bool from_file,
                              const std::vector<int>& parameters) {
   if (!from_file) {

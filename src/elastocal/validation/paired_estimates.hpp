@@ -9,17 +9,18 @@
 
 namespace elastocal {
 
-/// What differs between two independent estimates of one robot, B less A.
+/// Differences B - A between two independent estimates of one robot.
 struct PairedEstimates {
   Differences differences;
-  std::vector<int> robot;                 ///< rows of the robot's parameters, in their order
-  std::vector<LinkMarkers> links;         ///< of which both have three markers or more
-  std::vector<std::vector<int>> markers;  ///< by link, rows of its markers' coordinates
+  std::vector<int> robot;          ///< rows of the robot's parameters, in the order of `common`
+  std::vector<LinkMarkers> links;  ///< links with three markers or more in both
+  std::vector<std::vector<int>> markers;  ///< by link: rows of its markers' coordinates
 };
 
-/// `common`: the robot's parameters to be paired. The covariance of markers has besides by how
-/// little one that nobody touched is found again (kMarkerReturns). Without covariance, variances
-/// alone are taken. Throws InputError if a covariance lacks a parameter.
+/// Pairs two estimates. `common` holds the robot's parameters to be paired. The covariance of
+/// markers also contains the repeatability of a marker that nobody touched (kMarkerReturns).
+/// Without covariance, only variances are used. Throws InputError if a covariance lacks a
+/// parameter.
 PairedEstimates PairEstimates(const CalibrationEstimate& a, const CalibrationEstimate& b,
                               const std::vector<CommonParameter>& common, bool with_covariance,
                               bool with_markers);

@@ -33,7 +33,7 @@ bool SameHold(const Recording& recording, int before, int i, double longest_gap_
   return recording.time_s[i] - recording.time_s[before] <= longest_gap_s;
 }
 
-/// Groups samples by posture and repetition. The first sample of a posture defines it.
+/// Groups samples by posture and repetition. The first sample of a posture defines the posture.
 std::vector<Repetitions> GroupSamples(const Recording& recording,
                                       const RepeatabilityOptions& options) {
   std::vector<Repetitions> postures;
@@ -91,14 +91,13 @@ double Distance(const Recording& recording, const std::vector<int>& samples,
       .norm();
 }
 
-/// Scatter of samples within repetitions.
+/// Scatter of the samples within repetitions.
 struct Scatter {
   double squares = 0.0;
   int freedom = 0;
 };
 
-/// Adds the scatter of the samples that show all markers of the posture, which is due to noise
-/// alone.
+/// Adds the scatter of the samples that show all markers of the posture. It is due to noise alone.
 void AddScatter(const Recording& recording, const std::vector<int>& samples,
                 const RepeatedPosture& posture, Scatter& scatter) {
   std::vector<double> distances;
@@ -113,7 +112,7 @@ void AddScatter(const Recording& recording, const std::vector<int>& samples,
   scatter.freedom += static_cast<int>(d.size()) - 1;
 }
 
-/// Removes repetitions that show too few markers, and chooses the markers that the others have in
+/// Removes repetitions that show too few markers, and selects the markers that the others have in
 /// common.
 RepeatedPosture ChooseMarkers(const Recording& recording, const Repetitions& repetitions,
                               const std::vector<int>& waist, const std::vector<int>& effector,
@@ -137,7 +136,7 @@ RepeatedPosture ChooseMarkers(const Recording& recording, const Repetitions& rep
 void Summarise(const Recording& recording, Repeatability& result) {
   std::vector<double> deviations;
   double squares = 0.0;
-  double inverse_counts = 0.0;  // of the samples in a repetition
+  double inverse_counts = 0.0;  // of the number of samples in a repetition
   Scatter scatter;
   for (const RepeatedPosture& posture : result.postures) {
     const double mean = posture.distances.mean();

@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-/// Two markers only show their distance, and what turns about the line through them hides.
+/// Two markers only tell their distance; a rotation about the line through them stays hidden.
 constexpr std::size_t kFewestMarkers = 3;
 
 std::map<std::string, int> EstimatedParameters(const CalibrationEstimate& estimate) {
@@ -20,7 +20,8 @@ std::map<std::string, int> EstimatedParameters(const CalibrationEstimate& estima
   return index;
 }
 
-/// p of the differences of a link's markers, if those of all other links kept are none.
+/// The p value of the differences of a link's markers, under the condition that the markers of all
+/// other `same` links have not moved.
 double TestAgainstOthers(const Differences& differences, const std::vector<std::vector<int>>& rows,
                          const std::vector<LinkMarkers>& links, std::size_t k) {
   std::vector<LinkMarkers> others = links;

@@ -9,53 +9,55 @@
 
 namespace elastocal {
 
-/// The markers on a link that two calibrations of one robot both have.
+/// The markers on one link that two calibrations of a robot have in common.
 struct LinkMarkers {
   std::string link;
   std::vector<std::string> markers;
-  bool same = false;  ///< whether both calibrations find them in the same places
-  /// Probability that their places differ as much if none has moved, given that those of the other
-  /// links taken as the same have not.
+  bool same = false;  ///< both calibrations find them at the same positions
+  /// Probability of at least this difference of their positions if none has moved, given that the
+  /// markers of the other links marked `same` have not moved.
   double p = 1.0;
-  /// Not the same only because all of them, moved as one piece, explain what would otherwise be put
-  /// down to several joints.
+  /// They are not `same` only because their motion as one piece explains differences for which
+  /// otherwise several joints would be accused.
   bool as_one_piece = false;
 };
 
-/// Standard deviation of the difference of a coordinate of a marker that nobody touched, on another
-/// day: it gives a little, and cameras are calibrated anew.
+/// Standard deviation of the difference of a marker's coordinate between two days, if nobody
+/// touched the marker: its mount yields a little, and the cameras are calibrated anew.
 inline constexpr double kMarkerReturns = 1e-4;  // m
 
-/// Links with three common markers or more, whose places can therefore tell whether they were fixed
-/// anew. In the order of B.
+/// Links with three common markers or more, in the order of B. The positions of fewer markers do
+/// not tell whether they were fixed anew.
 std::vector<LinkMarkers> FindCommonMarkers(const std::vector<MarkerPlace>& a,
                                            const std::vector<MarkerPlace>& b);
 
-/// A coordinate of a common marker: its row in the parameters of A and B, and by how much its
-/// nominal place is elsewhere in B than in A, m.
+/// A coordinate of a common marker: its index in the parameters of A and of B, and its nominal
+/// value in B minus that in A, m.
 struct MarkerCoordinate {
   int in_a = 0, in_b = 0;
   double nominal_difference = 0.0;
 };
 
-/// Those of the markers of a link, three for each. Empty if one of them is not estimated.
+/// Coordinates of the markers of a link, three for each marker. Empty if one of them is not
+/// estimated in both.
 std::vector<MarkerCoordinate> CoordinatesOf(const LinkMarkers& link, const CalibrationEstimate& a,
                                             const CalibrationEstimate& b);
 
-/// Rows of the markers on links where they are the same. `rows`: by link, all of them.
+/// Rows of the markers on links that are marked `same`. `rows` holds all rows by link.
 std::vector<int> RowsOfUnmoved(const std::vector<std::vector<int>>& rows,
                                const std::vector<LinkMarkers>& links);
 
-/// Decides on which links no marker has moved between two calibrations.
+/// Decides on which links no marker has moved between two calibrations, and marks them `same`.
 ///
-/// Three markers or more that were glued anew do not come to lie within the tenth of a millimetre
-/// to which their places are told against each other and markers return. So all markers are taken
-/// to be where they were, and the link whose markers contradict all others most is given up, until
-/// none does at the level (adjusted by Bonferroni for the number of links). Any joint may have
-/// moved meanwhile: only what both calibrations tell of the markers whatever the robot is counts.
+/// Three markers or more that are glued anew do not return to their relative positions within the
+/// tenth of a millimetre to which these are known. All markers are therefore assumed to be where
+/// they were. The link whose markers contradict all others most is then given up, and so on until
+/// no link is significant at the level (corrected for the number of links by Bonferroni). Any joint
+/// may have moved meanwhile: the test uses only what both calibrations tell about the markers
+/// whatever the robot is.
 ///
-/// `differences`: all, of the robot and of markers. `rows`: by link, those of its markers. Throws
-/// std::invalid_argument if the covariance is not positive definite.
+/// `differences` are those of the robot and the markers. `rows` holds by link the rows of its
+/// markers. Throws std::invalid_argument if the covariance is not positive definite.
 void FindUnmovedMarkers(const Differences& differences, const std::vector<std::vector<int>>& rows,
                         double level, std::vector<LinkMarkers>& links);
 

@@ -12,8 +12,8 @@
 namespace elastocal {
 namespace {
 
-/// Inverse by way of the correlations, because rad and m differ too much in size to invert the
-/// covariance itself.
+/// Inverse of a covariance by way of its correlations, because rad and m differ too much in size to
+/// invert it directly.
 Eigen::MatrixXd InverseOf(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::LLT<Eigen::MatrixXd> correlation(scale.asDiagonal() * covariance *

@@ -10,12 +10,13 @@
 namespace elastocal {
 namespace {
 
-constexpr double kMostOutliers = 0.25;     // from this part of all observations on, an objection
-constexpr double kManyOutliers = 0.05;     // from this part on, a remark
-constexpr double kSuspectedMarker = 0.25;  // part of the observations of a marker or posture
-constexpr double kMostWeak = 0.5;          // of the parameters may lean on the prior alone
-constexpr double kAsGood = 1.01;           // times as large: no difference
-constexpr double kWorse = 1.05;            // times as large: more than chance makes an error
+// Share of all observations above which there is an objection.
+constexpr double kMostOutliers = 0.25;
+constexpr double kManyOutliers = 0.05;     // share above which there is a remark
+constexpr double kSuspectedMarker = 0.25;  // share of the observations of a marker
+constexpr double kMostWeak = 0.5;          // share of the parameters that may be hardly excited
+constexpr double kAsGood = 1.01;           // ratio of errors below which they are as good
+constexpr double kWorse = 1.05;  // ratio of errors above which one is worse by more than chance
 constexpr const char* kAdvice =
     " Check the order and signs of the columns, the joints' zeros, and which link each marker is "
     "on.";
@@ -74,7 +75,7 @@ void JudgeFit(const CalibrationResult& result, const CalibrationOptions& options
   JudgeAxes(result, verdict);
 }
 
-/// Names the joint parameter that is furthest from nominal in units of its prior.
+/// Names the geometric joint parameter that is furthest from nominal in units of its prior.
 void NameLargest(const CalibrationResult& result, const Prior& prior, Verdict& verdict) {
   int largest = -1;
   double furthest = 0.0;
@@ -187,7 +188,7 @@ void JudgeDeployment(const Deployment& deployment, double expected_error, Verdic
 void JudgePostures(const Eigen::MatrixXd& distances, const ObservationMask& used,
                    const Recording& recording, double expected_error, Verdict& verdict) {
   constexpr double kGross = 5.0;  // times the expected error
-  constexpr double kMany = 0.2;   // of the postures
+  constexpr double kMany = 0.2;   // share of the postures
   const int trials = std::max<int>(1, static_cast<int>(recording.trials.size()));
   for (int trial = 0; trial < trials; ++trial) {
     int count = 0, gross = 0;
@@ -223,7 +224,7 @@ void JudgeHeldOut(const ErrorTable& table, ModelKind model, ModelKind urdf, Verd
     if (calibrated == row.metrics.end() || !std::isfinite(calibrated->second.rmse_3d)) continue;
     const double rmse = calibrated->second.rmse_3d;
     for (const auto& [kind, metrics] : row.metrics) {
-      // Of a rigid robot all models but the uncalibrated one are as good.
+      // For a rigid robot all models but the uncalibrated one are equally good.
       const double as_good = kind == ModelKind::kUncalibrated ? 1.0 : kAsGood;
       if (kind == model || kind == ModelKind::kRigid || !(rmse >= as_good * metrics.rmse_3d)) {
         continue;
