@@ -31,6 +31,7 @@ struct SeriesSpring {
   Eigen::Vector3d axis;     ///< unit vector; see SeriesSprings for the frame
   Eigen::Vector3d anchor;   ///< a point of the axis, m
   double compliance = 0.0;  ///< rad/(N.m), or of one that slides m/N; positive
+  double unloaded = 0.0;    ///< its position without load, rad or m
 };
 
 /// The springs of a calibration: those of one joint together, from the root outwards. Axes and
@@ -43,8 +44,14 @@ struct SeriesSpring {
 /// the leg. Here they are where they are when both are level: in a posture in which they are
 /// inclined by an angle a, compliances are mixed by sin a. A leg without a first joint of its own
 /// on the root link has none. Compliances of 0 are left out.
+///
+/// Such a spring bears the leg's own weight as well, which the robot at run time counts by the
+/// foot's share of the robot's (ec_leg_load): the geometry has a lifted leg as it hangs. So it is
+/// unloaded where it is 0 while the leg hangs at `rest` (by coordinate), and its compliance is less
+/// by the leg's share of all masses. Deflections are then those of run time, whatever a foot bears.
 std::vector<SeriesSpring> SeriesSprings(const CalibrationResult& calibration,
-                                        const RobotTree& calibrated, const std::vector<Leg>& legs);
+                                        const RobotTree& calibrated, const std::vector<Leg>& legs,
+                                        const Eigen::VectorXd& rest);
 
 /// What gives way below the feet, of those that are told: along the axis that is upright while the
 /// foot is flat, in the frame of the child link of the leg's last joint. That link is then on the
