@@ -31,6 +31,8 @@ struct CompensateOptions {
   double ease_s = 0.0;
 };
 
+bool IsPlaceFirst(const LeftAtLimb& one) { return one.arm_m < LeftAtLimb{}.arm_m; }
+
 /// By limb, where any that does not yield has more left than nothing.
 std::string DescribeLeft(const CompensatedMotion& result) {
   if (std::none_of(result.left.begin(), result.left.end(),
@@ -45,12 +47,18 @@ std::string DescribeLeft(const CompensatedMotion& result) {
       {"left at the end of", "most, mm", "at s",
        fmt::format("{} above {} mm", timed ? "seconds" : "samples", 1e3 * kLeftOver_m)});
   for (const LeftAtLimb& one : result.left) {
-    table.Add({one.limb + (one.yields ? " (yields)" : ""),
+    table.Add({one.limb + (one.yields          ? " (yields)"
+                           : IsPlaceFirst(one) ? " (place first)"
+                                               : ""),
                fmt::format("{:.2f}", 1e3 * one.most.value), fmt::format("{:.2f}", one.most.time_s),
                fmt::format("{:.{}f}", period * one.samples, timed ? 2 : 0)});
   }
+  const bool any_place_first = std::ranges::any_of(result.left, IsPlaceFirst);
   return table.Render() +
-         "A degree counts 5.2 mm. (yields): fewer than six joints, which cannot correct all\n\n";
+         "A degree counts 5.2 mm. (yields): fewer than six joints, which cannot correct all\n" +
+         (any_place_first ? "(place first): too few joints for place and attitude; a degree counts "
+                            "0.5 mm\n\n"
+                          : "\n");
 }
 
 /// What the calibration does not know, which is in none of the other figures.
@@ -173,7 +181,7 @@ void AddCompensate(CLI::App& app, Action& action) {
   command
       ->add_option("--most-left-mm", options->most_left_mm,
                    "Refuse a motion where limits leave more at the end of a limb of six joints or "
-                   "more; a degree counts 5.2 mm")
+                   "more; a degree counts 5.2 mm, of an arm with too few joints 0.5 mm")
       ->check(InBounds("compensate --most-left-mm"))
       ->capture_default_str();
   command

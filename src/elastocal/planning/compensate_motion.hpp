@@ -26,7 +26,7 @@ struct MotionExtreme {
 };
 
 /// How far limits keep the end of a limb from its place in a motion: a distance, to which an angle
-/// counts as its displacement at 0.3 m.
+/// counts as its displacement at `arm_m`.
 struct LeftAtLimb {
   std::string limb;  ///< a chain of the project
   MotionExtreme most;
@@ -34,6 +34,7 @@ struct LeftAtLimb {
   /// Whether the limb has fewer than six joints and shares some with a limb of six or more, whose
   /// end has priority: the end of a head on a trunk that carries arms.
   bool yields = false;
+  double arm_m = 0.3;  ///< a tenth where a limb has too few joints for place and attitude
 };
 
 inline constexpr double kLeftOver_m = 2e-4;

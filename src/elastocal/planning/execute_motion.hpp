@@ -34,7 +34,7 @@ struct Execution {
   /// where it was.
   std::string refused = {};
   StandingRun run;
-  PlaceError hands;  ///< tips of chains that are no legs and have six joints or more
+  PlaceError hands;  ///< ends of limbs that are no legs, and arms (IsArm)
   PlaceError swinging_feet;
   PlaceError landing;  ///< of a swinging foot 50 ms before the plan sets it down
   PlaceError waist;    ///< the root link

@@ -143,11 +143,12 @@ class Compensator {
   const std::vector<unsigned>& stopped() const noexcept { return stopped_; }
 
   /// Of the last Command: the largest error that is left at the ends of the limbs that a coordinate
-  /// can move, m; an angle counts as its displacement at 0.3 m. 0 for one that moves none.
+  /// can move, m; an angle counts as its displacement at 0.3 m (ec_tip::arm). 0 for one that moves
+  /// none.
   double left_m(int coordinate) const noexcept;
 
   /// Of the last Command: what is left at the end of a limb, by tip of the model, m; an angle
-  /// counts as its displacement at 0.3 m. Until another function is called.
+  /// counts as its displacement at 0.3 m (ec_tip::arm). Until another function is called.
   double tip_left_m(int tip) const noexcept;
 
   /// The same robot for the functions of core_correction.h.
