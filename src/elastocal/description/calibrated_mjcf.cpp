@@ -208,7 +208,7 @@ class SpringWriter {
         WriteVector(spring.anchor), FormatNumber(stiffness),
         FormatNumber(stiffness * kSpringDampingTime),
         FormatNumber(stiffness * kSpringInertiaTime * kSpringInertiaTime),
-        FormatNumber(spring.unloaded / (spring.slides ? 1.0 : angle_unit_)));
+        FormatNumber(spring.unloaded / (spring.slides ? 1.0 : angle_unit_) + 0.0));  // no -0
   }
 
   const std::string& text_;
