@@ -40,8 +40,8 @@ std::vector<SpherePair> PairsMovedBy(const RobotTree& tree,
                                      const Semantics& semantics);
 
 struct ContactSearch {
-  std::vector<SpherePair> pairs;  ///< that can touch, the most frequent first
-  int touching_at_rest = 0;       ///< pairs that touch in a posture of rest, left out
+  std::vector<SpherePair> pairs;             ///< that can touch, the most frequent first
+  std::vector<SpherePair> touching_at_rest;  ///< in a posture of rest; left out
 };
 
 /// Of `candidates`, the pairs that can touch while the chain moves over its ranges, or over its box
