@@ -54,7 +54,8 @@ class ElasticMjcf : public testing::Test {
     const CalibratedUrdf apart = MakeCalibratedUrdf(ReadFile(project_.urdf), project_.urdf.string(),
                                                     result, ZeroOffsets::kEncoder);
     const RobotTree calibrated = ParseUrdf(apart.text, "calibrated");
-    std::vector<SeriesSpring> springs = SeriesSprings(result, calibrated, legs_);
+    std::vector<SeriesSpring> springs =
+        SeriesSprings(result, calibrated, legs_, project_.motion.rest);
     const auto soles = SpringsOfSoles(stored_.soles, calibrated, legs_);
     springs.insert(springs.end(), soles.begin(), soles.end());
     return MakeCalibratedMjcf(user, "user.xml", project_.tree, calibrated, apart.encoder_offsets,
@@ -123,19 +124,27 @@ class ElasticMjcf : public testing::Test {
     mj_kinematics(&model, &data);
   }
 
-  /// Of the root link on the left foot, which is held to the floor, m: by how much it gives way,
-  /// and how far MuJoCo has it from there.
-  struct Stands {
-    double deflection = 0.0, off = 0.0;
+  const Leg& FindLeg(const std::string& name) const {
+    return *std::ranges::find(legs_, name, &Leg::chain);
+  }
+
+  /// The link that the last joint of a leg moves.
+  int FootOf(const Leg& leg) const {
+    return project_.tree.joints[static_cast<std::size_t>(leg.joints.back())].child_link;
+  }
+
+  /// A model at rest.
+  struct Played {
+    Model model;
+    Data data;
   };
 
-  Stands OnLeftFoot(const Eigen::VectorXd& q) const {
-    const Leg& leg = *std::ranges::find(legs_, std::string("leg_left"), &Leg::chain);
-    const Joint& ankle = project_.tree.joints[static_cast<std::size_t>(leg.joints.back())];
-    const std::string foot = LinkName(ankle.child_link);
-    Compensator elastic(MakeRuntimeModel(project_, stored_));
+  /// The exported robot, whose left foot is welded to the floor where it is flat at `q`, under a
+  /// force that pushes up the sole of the right leg, N.
+  Played PlayOnLeftFoot(const Eigen::VectorXd& q, double push = 0.0) const {
+    const Leg& leg = FindLeg("leg_left");
+    const std::string foot = LinkName(FootOf(leg));
     Compensator rigid(MakeRuntimeModel(project_, stored_, RuntimeContent::kGeometry));
-    const StandingFeet feet = 1u << (&leg - legs_.data());
     rigid.Forward(q, Eigen::VectorXd(), 0);
     Transform T_root_foot = Transform::Identity();  // the sole's link, flat on the floor
     T_root_foot.matrix() = rigid.link_pose(leg.foot_link).matrix();
@@ -159,23 +168,47 @@ class ElasticMjcf : public testing::Test {
         "<equality><weld body1=\"{}\" relpose=\"{} {} {} {} {} {} {}\" solref=\"0.005 1\" "
         "solimp=\"0.999 0.9999 0.001\"/></equality></mujoco>",
         foot, shift.x(), shift.y(), shift.z(), turn.w(), turn.x(), turn.y(), turn.z());
-    const Model model = Load(text.substr(0, text.rfind("</mujoco>")) + weld);
-    const Data data(mj_makeData(model.get()), &mj_deleteData);
+    Model model = Load(text.substr(0, text.rfind("</mujoco>")) + weld);
+    Data data(mj_makeData(model.get()), &mj_deleteData);
     put(*model, *data);
+    PushUp(*model, FindLeg("leg_right"), push, *data);
     Play(*model, 5.0, *data);
+    return {std::move(model), std::move(data)};
+  }
 
+  /// A force through the ankle of a leg, along the vertical.
+  void PushUp(const mjModel& model, const Leg& leg, double force, mjData& data) const {
+    const int foot = mj_name2id(&model, mjOBJ_BODY, LinkName(FootOf(leg)).c_str());
+    mj_kinematics(&model, &data);
+    mj_comPos(&model, &data);
+    const Eigen::Vector3d lever = Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * foot) -
+                                  Eigen::Map<const Eigen::Vector3d>(data.xipos + 3 * foot);
+    const Eigen::Vector3d up(0, 0, force);
+    Eigen::Map<Eigen::Vector3d>(data.xfrc_applied + 6 * foot) = up;
+    Eigen::Map<Eigen::Vector3d>(data.xfrc_applied + 6 * foot + 3) = lever.cross(up);
+  }
+
+  /// Of the root link on the left foot, which is held to the floor, m: by how much it gives way,
+  /// and how far MuJoCo has it from there.
+  struct Stands {
+    double deflection = 0.0, off = 0.0;
+  };
+
+  Stands OnLeftFoot(const Eigen::VectorXd& q) const {
+    const Leg& leg = FindLeg("leg_left");
+    const auto [model, data] = PlayOnLeftFoot(q);
     const Eigen::VectorXd encoders = Encoders(*model, *data);
-    const Transform T_foot_root =
-        BodyPose(*model, *data, foot).inverse() *
-        BodyPose(
-            *model, *data,
-            LinkName(
-                project_.tree.joints[static_cast<std::size_t>(leg.joints.front())].parent_link));
+    const Joint& hip = project_.tree.joints[static_cast<std::size_t>(leg.joints.front())];
+    const Transform T_foot_root = BodyPose(*model, *data, LinkName(FootOf(leg))).inverse() *
+                                  BodyPose(*model, *data, LinkName(hip.parent_link));
+    Compensator elastic(MakeRuntimeModel(project_, stored_));
+    Compensator rigid(MakeRuntimeModel(project_, stored_, RuntimeContent::kGeometry));
+    const StandingFeet feet = 1u << (&leg - legs_.data());
     elastic.Forward(encoders, Eigen::VectorXd(), feet);
     rigid.Forward(encoders, Eigen::VectorXd(), feet);
     // Of the sole in the body of the foot.
     const Transform T_body_sole =
-        project_.tree.links[static_cast<std::size_t>(ankle.child_link)].T_body_link.inverse() *
+        project_.tree.links[static_cast<std::size_t>(FootOf(leg))].T_body_link.inverse() *
         project_.tree.links[static_cast<std::size_t>(leg.foot_link)].T_body_link;
     const Eigen::Vector3d root = (T_body_sole.inverse() * T_foot_root).translation();
     const double deflection =
@@ -232,6 +265,36 @@ TEST_F(ElasticMjcf, StandsOnOneFootAsTheElasticModelDoes) {
   const Stands stands = OnLeftFoot(Posture(7));
   EXPECT_GT(stands.deflection, 1e-2);
   EXPECT_LT(stands.off, kShareOnLeg * stands.deflection);
+}
+
+// The leg weighs a sixth of the robot. While it hangs it is as the geometry has it, and from there
+// it gives way by the share of the weight that the floor bears, as much on the whole weight as
+// eq. 6 says.
+TEST_F(ElasticMjcf, ALegGivesWayByItsShareOfTheWeight) {
+  for (auto& [name, value] : stored_.joint_errors) value = 0.0;
+  for (const char* along : {"x", "y", "z"}) {
+    stored_.joint_errors[std::string("leg_right.compliance_") + along] = 1e-6;   // m/N
+    stored_.joint_errors[std::string("leg_right.compliance_r") + along] = 1e-5;  // rad/(N.m)
+  }
+  double all = 0.0, leg = 0.0;
+  for (const Link& link : project_.tree.links) {
+    all += 9.81 * link.mass;
+    if (link.name.starts_with("leg_right") || link.name == "right_sole_link") {
+      leg += 9.81 * link.mass;
+    }
+  }
+  ASSERT_GT(leg, 0.1 * all);
+  for (const double share : {0.0, 0.5, 1.0}) {
+    const auto [model, data] = PlayOnLeftFoot(project_.motion.rest, share * all);
+    const auto position = [&, model = model.get(), data = data.get()](const char* name) {
+      return data->qpos[model->jnt_qposadr[mj_name2id(model, mjOBJ_JOINT, name)]];
+    };
+    EXPECT_NEAR(position("leg_right_elastic_z"), share * 1e-6 * (all - leg), 0.02 * 1e-6 * leg);
+    if (share > 0.0) continue;
+    // Motors give way, so that the robot leans by some mrad, of the leg's lever of 85 mm a part.
+    EXPECT_NEAR(position("leg_right_elastic_rx"), 0.0, 0.1 * 1e-5 * leg * 0.085);
+    EXPECT_NEAR(position("leg_right_elastic_ry"), 0.0, 0.1 * 1e-5 * leg * 0.085);
+  }
 }
 
 // It is below the ankle: how the leg is inclined does not matter.

@@ -31,6 +31,8 @@ struct CompensateOptions {
   double ease_s = 0.0;
 };
 
+bool IsPlaceFirst(const LeftAtLimb& one) { return one.arm_m < LeftAtLimb{}.arm_m; }
+
 /// Table by limb, if any limb that does not yield has a deviation.
 std::string DescribeLeft(const CompensatedMotion& result) {
   if (std::none_of(result.left.begin(), result.left.end(),
@@ -45,17 +47,23 @@ std::string DescribeLeft(const CompensatedMotion& result) {
       {"left at the end of", "most, mm", "at s",
        fmt::format("{} above {} mm", timed ? "seconds" : "samples", 1e3 * kLeftOver_m)});
   for (const LeftAtLimb& one : result.left) {
-    table.Add({one.limb + (one.yields ? " (yields)" : ""),
+    table.Add({one.limb + (one.yields          ? " (yields)"
+                           : IsPlaceFirst(one) ? " (place first)"
+                                               : ""),
                fmt::format("{:.2f}", 1e3 * one.most.value), fmt::format("{:.2f}", one.most.time_s),
                fmt::format("{:.{}f}", period * one.samples, timed ? 2 : 0)});
   }
+  const bool any_place_first = std::ranges::any_of(result.left, IsPlaceFirst);
   return table.Render() +
-         "A degree counts 5.2 mm. (yields): fewer than six joints, which cannot correct all\n\n";
+         "A degree counts 5.2 mm. (yields): fewer than six joints, which cannot correct all\n" +
+         (any_place_first ? "(place first): too few joints for place and attitude; a degree counts "
+                            "0.5 mm\n\n"
+                          : "\n");
 }
 
 /// Expected errors because the calibration does not know the geometry better; they are in none of
 /// the other figures.
-std::string DescribeExpected(const std::vector<ExpectedAtLimb>& expected) {
+std::string DescribeExpected(const std::vector<ExpectedAtLimb>& expected, bool stands) {
   if (expected.empty()) {
     return "How far the real robot will be from that is not known: the calibration has no "
            "covariance\n";
@@ -65,15 +73,21 @@ std::string DescribeExpected(const std::vector<ExpectedAtLimb>& expected) {
     table.Add({one.limb, fmt::format("{:.1f}", 1e3 * one.position),
                fmt::format("{:.2f}", one.attitude * 180.0 / M_PI)});
   }
-  return "\n" + table.Render() +
-         "Seen from the standing foot: what the calibration does not know of the geometry. A "
-         "single robot may have\ntwice as much. Springs in fast motion and a stabiliser come on "
-         "top. Measured places of markers on hands,\nfeet and waist make it less (calibrate "
-         "--marker-places), and so does a floor whose level is known\nbetter (calibration: "
-         "{floor_tilt_deg: ...})\n";
+  const std::string of_all =
+      ": what the calibration does not know of the geometry. A single robot may have\ntwice as "
+      "much. ";
+  if (!stands) {
+    return "\n" + table.Render() + "Seen from the root link" + of_all +
+           "Springs in fast motion come on top. Measured places of markers on hands and root\nlink "
+           "make it less (calibrate --marker-places)\n";
+  }
+  return "\n" + table.Render() + "Seen from the standing foot" + of_all +
+         "Springs in fast motion and a stabiliser come on top. Measured places of markers on "
+         "hands,\nfeet and waist make it less (calibrate --marker-places), and so does a floor "
+         "whose level is known\nbetter (calibration: {floor_tilt_deg: ...})\n";
 }
 
-std::string DescribeCompensation(const CompensatedMotion& result, const RobotTree& tree) {
+std::string DescribeCompensation(const CompensatedMotion& result, const Project& project) {
   TextTable table({"over all samples", "worst", "at s", "where"});
   const auto add = [&](const char* what, const MotionExtreme& at, double scale) {
     table.Add({what, fmt::format("{:.2f}", scale * at.value), fmt::format("{:.2f}", at.time_s),
@@ -81,10 +95,9 @@ std::string DescribeCompensation(const CompensatedMotion& result, const RobotTre
   };
   constexpr double kDegreesARadian = 180.0 / M_PI;
   const auto add_of_joint = [&](const char* what, const MotionExtreme& at) {
-    const bool slides =
-        std::any_of(tree.joints.begin(), tree.joints.end(), [&](const Joint& joint) {
-          return joint.name == at.where && joint.type == JointType::kPrismatic;
-        });
+    const bool slides = std::ranges::any_of(project.tree.joints, [&](const Joint& joint) {
+      return joint.name == at.where && joint.type == JointType::kPrismatic;
+    });
     add((what + std::string(slides ? ", mm" : ", deg")).c_str(), at,
         slides ? 1e3 : kDegreesARadian);
   };
@@ -98,10 +111,10 @@ std::string DescribeCompensation(const CompensatedMotion& result, const RobotTre
   }
   return table.Render() + DescribeOpenJoints(result.at_rest) + DescribeLeft(result) +
          fmt::format(
-             "Left by limits at hands, feet and waist of the calibrated model: at most "
-             "{:.3f} mm and {:.4f} deg\n",
+             "Left at the ends of limbs of the calibrated model (but for those that yield): at "
+             "most {:.3f} mm and {:.4f} deg\n",
              1e3 * result.residual_m, result.residual_rad * kDegreesARadian) +
-         DescribeExpected(result.expected);
+         DescribeExpected(result.expected, !project.soles.empty());
 }
 
 int Compensate(const CompensateOptions& options) {
@@ -132,7 +145,7 @@ int Compensate(const CompensateOptions& options) {
   outputs.Publish();
 
   const bool quiet = options.common.Silent();
-  Print(quiet, DescribeCompensation(result, robot.project.tree));
+  Print(quiet, DescribeCompensation(result, robot.project));
   WarnOfExtra(robot, options.as == "compensated");
   for (const std::string& reason : result.warnings) spdlog::warn("{}", reason);
   for (const std::string& reason : result.broken) spdlog::error("{}", reason);
@@ -174,7 +187,7 @@ void AddCompensate(CLI::App& app, Action& action) {
   command
       ->add_option("--most-left-mm", options->most_left_mm,
                    "Refuse a motion where limits leave more at the end of a limb of six joints or "
-                   "more; a degree counts 5.2 mm")
+                   "more; a degree counts 5.2 mm, of an arm with too few joints 0.5 mm")
       ->check(InBounds("compensate --most-left-mm"))
       ->capture_default_str();
   command

@@ -111,7 +111,9 @@ std::vector<SeriesSpring> SpringsOf(const std::vector<SeriesSpring>& springs, st
 /// Puts springs into a model.
 class SpringWriter {
  public:
-  SpringWriter(const std::string& text, const XmlElement& root) : text_(text), root_(root) {
+  /// `angle_unit`: of the model's angles, rad.
+  SpringWriter(const std::string& text, const XmlElement& root, double angle_unit)
+      : text_(text), root_(root), angle_unit_(angle_unit) {
     CheckKeyframes();
     CollectNames(root);
   }
@@ -202,15 +204,17 @@ class SpringWriter {
     const double stiffness = 1.0 / spring.compliance;
     return fmt::format(
         "<joint name=\"{}\" type=\"{}\" axis=\"{}\" pos=\"{}\" stiffness=\"{}\" damping=\"{}\" "
-        "armature=\"{}\" springref=\"0\" ref=\"0\" limited=\"false\" frictionloss=\"0\"/>",
+        "armature=\"{}\" springref=\"{}\" ref=\"0\" limited=\"false\" frictionloss=\"0\"/>",
         Fresh(name), spring.slides ? "slide" : "hinge", WriteVector(spring.axis),
         WriteVector(spring.anchor), FormatNumber(stiffness),
         FormatNumber(stiffness * kSpringDampingTime),
-        FormatNumber(stiffness * kSpringInertiaTime * kSpringInertiaTime));
+        FormatNumber(stiffness * kSpringInertiaTime * kSpringInertiaTime),
+        FormatNumber(spring.unloaded / (spring.slides ? 1.0 : angle_unit_) + 0.0));  // no -0
   }
 
   const std::string& text_;
   const XmlElement& root_;
+  double angle_unit_;
   std::set<std::string> names_;
   std::vector<XmlEdit> edits_, ends_;
   std::string excluded_;
@@ -233,7 +237,7 @@ std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& sourc
   const MjcfJointDefaults defaults(root);
   std::vector<XmlEdit> edits;
   std::optional<SpringWriter> writer;
-  if (!springs.empty()) writer.emplace(mjcf, root);
+  if (!springs.empty()) writer.emplace(mjcf, root, angle_unit);
   for (std::size_t k = 0; k < nominal.joints.size(); ++k) {
     const Joint& joint = nominal.joints[k];
     const MjcfBody& body = bodies.MovedBy(k);

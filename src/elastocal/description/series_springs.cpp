@@ -7,6 +7,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/transform.hpp"
 #include "elastocal/robot/kinematics.hpp"
+#include "elastocal/robot/statics.hpp"
 
 namespace elastocal {
 namespace {
@@ -48,7 +49,8 @@ class SpringCollector {
   std::vector<SeriesSpring> springs;
 
   void Add(int joint, SpringPlace place, const std::string& name, bool slides,
-           const Eigen::Vector3d& axis, const Eigen::Vector3d& anchor, double compliance) {
+           const Eigen::Vector3d& axis, const Eigen::Vector3d& anchor, double compliance,
+           double unloaded = 0.0) {
     if (!(compliance > 0.0)) return;
     springs.push_back({.joint = joint,
                        .place = place,
@@ -56,20 +58,50 @@ class SpringCollector {
                        .slides = slides,
                        .axis = axis,
                        .anchor = anchor,
-                       .compliance = compliance});
+                       .compliance = compliance,
+                       .unloaded = unloaded});
   }
 };
 
+/// What the leg that begins with a joint weighs.
+struct LegWeight {
+  double share = 0.0;  ///< of the robot's
+  Vector6d load;  ///< while it hangs: force, and moment about the root link's origin, in its axes
+};
+
+LegWeight WeightOfLeg(const RobotTree& tree, int joint, const Eigen::VectorXd& q) {
+  std::vector<bool> beyond(Size(tree.body_count()), false);
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    beyond[k + 1] = static_cast<int>(k) == joint || beyond[Size(tree.joints[k].parent_body)];
+  }
+  const std::vector<Transform> T_root_link = LinkTransforms(tree, q);
+  double all = 0.0, mass = 0.0;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const Link& link = tree.links[i];
+    all += link.mass;
+    if (!beyond[Size(link.body)]) continue;
+    mass += link.mass;
+    moment += link.mass * (T_root_link[i] * link.com);
+  }
+  LegWeight weight;
+  weight.share = all > 0.0 ? mass / all : 0.0;
+  weight.load << mass * kGravity, moment.cross(kGravity);
+  return weight;
+}
+
 void AddLegSprings(const ErrorModel& model, const Geometry& geometry, const Leg& leg, int joint,
-                   SpringCollector& to) {
+                   const LegWeight& weight, SpringCollector& to) {
   for (std::size_t i = 0; i < geometry.leg_compliance.size(); ++i) {
     if (model.legs[i].link != leg.foot_link) continue;
     for (int axis = 0; axis < 6; ++axis) {
       const bool slides = axis < 3;
+      const Eigen::Vector3d along = leg.R_floor_foot.col(axis % 3);
+      const double compliance = geometry.leg_compliance[i][axis] * (1.0 - weight.share);
+      const double own = along.dot(slides ? weight.load.head<3>() : weight.load.tail<3>());
       to.Add(joint, SpringPlace::kLeg,
              model.legs[i].name + ".compliance_" + (slides ? "" : "r") + kAxisNames[axis % 3],
-             slides, leg.R_floor_foot.col(axis % 3), Eigen::Vector3d::Zero(),
-             geometry.leg_compliance[i][axis]);
+             slides, along, Eigen::Vector3d::Zero(), compliance, -compliance * own);
     }
   }
 }
@@ -77,7 +109,8 @@ void AddLegSprings(const ErrorModel& model, const Geometry& geometry, const Leg&
 }  // namespace
 
 std::vector<SeriesSpring> SeriesSprings(const CalibrationResult& calibration,
-                                        const RobotTree& calibrated, const std::vector<Leg>& legs) {
+                                        const RobotTree& calibrated, const std::vector<Leg>& legs,
+                                        const Eigen::VectorXd& rest) {
   const ErrorModel& model = calibration.model;
   const Geometry geometry = ApplyErrors(model, calibration.delta);
   SpringCollector collector;
@@ -85,7 +118,9 @@ std::vector<SeriesSpring> SeriesSprings(const CalibrationResult& calibration,
     const Joint& joint = model.tree.joints[static_cast<std::size_t>(k)];
     const Geometry::JointConstants& constants = geometry.joints[static_cast<std::size_t>(k)];
     if (joint.parent_body == 0) {
-      if (const Leg* leg = LegFrom(legs, k)) AddLegSprings(model, geometry, *leg, k, collector);
+      if (const Leg* leg = LegFrom(legs, k)) {
+        AddLegSprings(model, geometry, *leg, k, WeightOfLeg(calibrated, k, rest), collector);
+      }
       for (int axis = 0; axis < 3; ++axis) {
         collector.Add(
             k, SpringPlace::kRootLink, joint.name + ".compliance_root_" + kAxisNames[axis], false,

@@ -31,6 +31,7 @@ struct SeriesSpring {
   Eigen::Vector3d axis;     ///< unit vector; see SeriesSprings for the frame
   Eigen::Vector3d anchor;   ///< a point of the axis, m
   double compliance = 0.0;  ///< rad/(N.m), or m/N for a spring that slides; positive
+  double unloaded = 0.0;    ///< position without load, rad or m
 };
 
 /// The springs of a calibration, those of one joint together, from the root outwards. Axes and
@@ -44,8 +45,15 @@ struct SeriesSpring {
 /// link with the leg. Here these axes are fixed as they are when both are level: in a posture in
 /// which they are inclined by an angle a, compliances are mixed by sin a. A leg without a first
 /// joint of its own on the root link has no springs. Compliances of 0 are left out.
+///
+/// A leg's spring also bears the weight of the leg itself. The robot at run time counts that weight
+/// by the foot's share of the robot's weight (ec_leg_load), because the geometry is that of a leg
+/// that hangs when it is lifted. So the spring is unloaded at its position 0 while the leg hangs at
+/// `rest` (by coordinate), and its compliance is smaller by the leg's share of all masses. The
+/// deflections are then those of run time, whatever a foot bears.
 std::vector<SeriesSpring> SeriesSprings(const CalibrationResult& calibration,
-                                        const RobotTree& calibrated, const std::vector<Leg>& legs);
+                                        const RobotTree& calibrated, const std::vector<Leg>& legs,
+                                        const Eigen::VectorXd& rest);
 
 /// The springs below the feet that `soles` has: along the axis that is upright while the foot is
 /// flat, in the frame of the child link of the leg's last joint. That link is then on the floor's

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <set>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -181,19 +183,25 @@ void HoldArmsAhead(ProjectDraft& draft, const Semantics& semantics) {
 
 void AddContacts(ProjectDraft& draft, const Semantics& semantics) {
   const std::vector<Eigen::VectorXd> rests = RestingPostures(draft);
-  int touching = 0;
+  std::set<SpherePair> touching;  // of mirrored chains, once
   for (ChainSetup& setup : draft.designs) {
     const auto candidates = PairsMovedBy(draft.tree, draft.spheres, setup.coordinates, semantics);
     ContactSearch search =
         FindContacts(draft.tree, draft.spheres, candidates, rests, setup, draft.sphere_margin);
     setup.contacts = std::move(search.pairs);
-    touching = std::max(touching, search.touching_at_rest);
+    touching.insert(search.touching_at_rest.begin(), search.touching_at_rest.end());
   }
-  if (touching > 0) {
-    draft.warnings.push_back(
-        "pairs of spheres that touch in the posture of rest are not checked: " +
-        std::to_string(touching));
+  if (touching.empty()) return;
+  constexpr std::size_t kNamed = 6;
+  std::string names;
+  for (const auto& [a, b] : touching | std::views::take(kNamed)) {
+    names += (names.empty() ? "" : ", ") + draft.spheres[Size(a)].name + " and " +
+             draft.spheres[Size(b)].name;
   }
+  if (touching.size() > kNamed) {
+    names += " and " + std::to_string(touching.size() - kNamed) + " pairs more";
+  }
+  draft.warnings.push_back("spheres that touch in the posture of rest are not checked: " + names);
 }
 
 /// Of two limbs that are mirror images, keeps the set-up of the first one for both.

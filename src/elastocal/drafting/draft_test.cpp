@@ -264,11 +264,11 @@ TEST(Draft, PairsThatTouchInAnyPostureOfRestAreNotChecked) {
   raised[0] = 0.8;
   const ContactSearch one = FindContacts(tree, spheres, {{0, 1}}, {raised}, chain, 0.005);
   EXPECT_EQ(one.pairs.size(), 1U);
-  EXPECT_EQ(one.touching_at_rest, 0);
+  EXPECT_TRUE(one.touching_at_rest.empty());
   const ContactSearch two =
       FindContacts(tree, spheres, {{0, 1}}, {raised, 0.0 * raised}, chain, 0.005);
   EXPECT_TRUE(two.pairs.empty());
-  EXPECT_EQ(two.touching_at_rest, 1);
+  EXPECT_EQ(two.touching_at_rest, (std::vector<SpherePair>{{0, 1}}));
 }
 
 TEST(Draft, SaysWhereTheSrdfBreaksLimitsOfTheUrdf) {

@@ -233,8 +233,7 @@ ContactSearch FindContacts(const RobotTree& tree, const std::vector<CollisionSph
   std::vector<SpherePair> apart;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const bool touches = at_rest[static_cast<Eigen::Index>(i)] < margin;
-    if (!touches) apart.push_back(candidates[i]);
-    if (touches) ++found.touching_at_rest;
+    (touches ? found.touching_at_rest : apart).push_back(candidates[i]);
   }
   const auto range = RangesOf(tree, 0.02);
   std::vector<int> touched(apart.size(), 0);

@@ -41,9 +41,8 @@ std::vector<SpherePair> PairsMovedBy(const RobotTree& tree,
 
 /// Result of FindContacts.
 struct ContactSearch {
-  std::vector<SpherePair> pairs;  ///< pairs that can touch, the most frequent first
-  /// Number of pairs that touch in a posture of rest, which are left out.
-  int touching_at_rest = 0;
+  std::vector<SpherePair> pairs;             ///< pairs that can touch, the most frequent first
+  std::vector<SpherePair> touching_at_rest;  ///< pairs that touch in a posture of rest; left out
 };
 
 /// Selects from `candidates` the pairs that can touch while the chain moves over its ranges, or

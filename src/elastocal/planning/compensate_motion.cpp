@@ -113,7 +113,10 @@ Eigen::VectorXd Speeds(const RobotTree& tree) {
 std::vector<LeftAtLimb> NothingLeft(const RuntimeModel& model) {
   std::vector<LeftAtLimb> left;
   for (std::size_t t = 0; t < model.tips.size(); ++t) {
-    left.push_back({.limb = model.tip_names[t], .most = {}, .yields = model.tips[t].yields != 0});
+    left.push_back({.limb = model.tip_names[t],
+                    .most = {},
+                    .yields = model.tips[t].yields != 0,
+                    .arm_m = model.tips[t].arm});
   }
   return left;
 }

@@ -26,7 +26,7 @@ struct MotionExtreme {
 };
 
 /// Deviation of the end of a limb from its place in a motion, due to limits. It is a distance, to
-/// which an angle adds the displacement that it causes at 0.3 m.
+/// which an angle adds the displacement that it causes at `arm_m`.
 struct LeftAtLimb {
   std::string limb;  ///< a chain of the project
   MotionExtreme most;
@@ -34,6 +34,7 @@ struct LeftAtLimb {
   /// The limb has fewer than six joints and shares some with a limb of at least six, whose end has
   /// priority: for example a head on a trunk that carries arms.
   bool yields = false;
+  double arm_m = 0.3;  ///< a tenth where a limb has too few joints for place and attitude
 };
 
 inline constexpr double kLeftOver_m = 2e-4;

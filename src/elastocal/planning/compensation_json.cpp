@@ -27,7 +27,8 @@ std::string MakeCompensationJson(const CompensatedMotion& result) {
                             {"most_mm", 1e3 * one.most.value},
                             {"time_s", one.most.time_s},
                             {"samples", one.samples},
-                            {"yields", one.yields}});
+                            {"yields", one.yields},
+                            {"degree_mm", 1e3 * one.arm_m * M_PI / 180.0}});
   }
   json["expected"] = nlohmann::ordered_json::array();
   for (const ExpectedAtLimb& one : result.expected) {

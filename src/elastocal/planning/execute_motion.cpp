@@ -38,20 +38,18 @@ int LooksAPicture(const JointMotion& plan) {
 /// Compares the robot's poses with those of the plan.
 class PlanWatch {
  public:
-  PlanWatch(const Project& project, const TrueRobot& robot, const JointMotion& plan, RootWatch root)
+  /// `model`: for the limbs.
+  PlanWatch(const Project& project, const RuntimeModel& model, const TrueRobot& robot,
+            const JointMotion& plan, RootWatch root)
       : project_(project),
         robot_(robot),
         plan_(plan),
         looks_a_picture_(LooksAPicture(plan)),
         root_(std::move(root)) {
-    for (const Chain& chain : project.chains) {
-      const int body = project.tree.links[static_cast<std::size_t>(chain.tip_link)].body;
-      const bool is_foot =
-          std::any_of(project.soles.begin(), project.soles.end(),
-                      [&](const Sole& sole) { return sole.link == chain.tip_link; });
-      const bool known = std::count(hands_links_.begin(), hands_links_.end(), chain.tip_link) > 0;
-      if (is_foot || known || JointsToBody(project.tree, body).size() < 6) continue;
-      hands_links_.push_back(chain.tip_link);
+    for (std::size_t t = 0; t < model.tips.size(); ++t) {
+      const Chain& chain = *std::ranges::find(project.chains, model.tip_names[t], &Chain::name);
+      const bool is_foot = std::ranges::count(project.soles, chain.tip_link, &Sole::link) > 0;
+      if (!is_foot && IsArm(model.tips[t])) hands_links_.push_back(chain.tip_link);
     }
     MarkLandings();
     std::vector<PlaybackTip> tips;
@@ -291,6 +289,7 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
     commands[i].q = FeedForward(commands[i].q, planned.time_s, physics.servo_frequency,
                                 2.0 / physics.servo_frequency - physics.time_step_s);
   });
+  const RuntimeModel limbs = MakeRuntimeModel(project, calibration, RuntimeContent::kNominal);
   const std::size_t runs = options.stabilised.size();  // runs of each robot
   std::vector<Execution> executions(runs * options.as.size());
   const auto play = [&](std::size_t i) {
@@ -300,7 +299,7 @@ std::vector<Execution> PlayExecutions(const Project& project, const StoredCalibr
     execution.refused = commands[i / runs].refused;
     if (!execution.refused.empty()) return;
     Stabiliser stabiliser(project.tree, project.soles);
-    PlanWatch watch(project, robot, planned,
+    PlanWatch watch(project, limbs, robot, planned,
                     RootWatch(project, calibration, ContentOf(execution.as)));
     execution.run = StandThrough(
         robot, project.soles, planned, physics,

@@ -34,7 +34,7 @@ struct Execution {
   /// played; empty where it was.
   std::string refused = {};
   StandingRun run;
-  PlaceError hands;  ///< ends of chains that are no legs and have at least six joints
+  PlaceError hands;  ///< ends of limbs that are arms (IsArm) and no legs
   PlaceError swinging_feet;
   PlaceError landing;  ///< swinging foot, 50 ms before the plan sets it down
   PlaceError waist;    ///< the root link

@@ -52,8 +52,8 @@ std::vector<std::string> StoppedJoints::Describe(int samples) const {
   const auto describe = [&](const Worst& worst, const char* what, const char* advice) {
     if (worst.samples == 0) return;
     sentences.push_back(
-        fmt::format("{}: {} at {:.2f} s, where {:.2f} mm are left at the end of its limb (a degree "
-                    "counts 5.2 mm; {} of {} samples are like this); {}",
+        fmt::format("{}: {} at {:.2f} s, where {:.2f} mm are left at the end of its limb ({} "
+                    "of {} samples are like this); {}",
                     what, fmt::join(worst.joints, ", "), worst.time_s, 1e3 * worst.left_m,
                     worst.samples, samples, advice));
   };

@@ -58,7 +58,7 @@ std::string FootText(const ec_foot& foot) {
 std::string TipText(const ec_tip& tip) {
   return "{" + FrameText(tip.frame) + ", " + std::to_string(tip.foot) + ", " +
          std::to_string(tip.branch) + ", " + std::to_string(tip.freedom) + ", " +
-         std::to_string(tip.yields) + "}";
+         std::to_string(tip.yields) + ", " + CNumber(tip.arm) + "}";
 }
 
 std::string ShiftText(const ec_shift& shift) {

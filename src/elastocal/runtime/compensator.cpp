@@ -223,7 +223,7 @@ double Compensator::tip_left_m(int tip) const noexcept {
   ec_pose now;
   double error[6];
   ec_tip_pose(&robot_, tip, &memory_, &now);
-  ec_tip_error(&now, &memory_.target[tip], error);
+  ec_tip_error(&now, &memory_.target[tip], robot_.tip[tip].arm, error);
   return std::sqrt(ec_dot(error, error) + ec_dot(&error[3], &error[3]));
 }
 

@@ -8,6 +8,8 @@
 
 /* Rotations count as the displacement that they give at this distance, m. */
 #define EC_ARM 0.3
+/* The same for arms that have too few joints for place and attitude: the place comes first. */
+#define EC_ARM_OF_FEW 0.03
 /* Weights of staying near the reference posture and of a short step, against EC_ARM's metres. What
    the ends of the limbs do not determine (redundant arms) stays at the reference, and what they
    hardly determine (stretched arms and knees) moves little. */
@@ -19,8 +21,9 @@
 /* After a step as small as this, rad or m, the next one would change the square of it. */
 #define EC_SMALL_STEP 1e-3
 
-/* How far tip t is from its target: metres, then radians times EC_ARM. */
-static inline void ec_tip_error(const ec_pose* now, const ec_pose* target, double* error) {
+/* How far a tip is from its target: metres, then radians times `arm`. */
+static inline void ec_tip_error(const ec_pose* now, const ec_pose* target, double arm,
+                                double* error) {
   double turn[9];
   int i;
   for (i = 0; i < 9; ++i) {
@@ -31,7 +34,7 @@ static inline void ec_tip_error(const ec_pose* now, const ec_pose* target, doubl
   ec_log(turn, &error[3]);
   for (i = 0; i < 3; ++i) {
     error[i] = target->p[i] - now->p[i];
-    error[3 + i] *= EC_ARM;
+    error[3 + i] *= arm;
   }
 }
 
@@ -43,7 +46,7 @@ static inline void ec_add_tip(const ec_robot* robot, const ec_joint* joints, int
   const double share = tip->yields ? EC_SHORT * EC_SHORT : 1.0;
   double error[6], *J = memory->column;
   int columns[64], used = 0, body, i, a, b;
-  ec_tip_error(now, &memory->target[t], error);
+  ec_tip_error(now, &memory->target[t], tip->arm, error);
   for (body = tip->frame.body; body > 0 && used < 64; body = joints[body - 1].parent) {
     const ec_joint* joint = &joints[body - 1];
     const double* axis = &memory->axis[3 * (body - 1)];
@@ -51,7 +54,7 @@ static inline void ec_add_tip(const ec_robot* robot, const ec_joint* joints, int
     if (robot->branch_of_coordinate[joint->coordinate] != tip->branch) continue;
     for (i = 0; i < 3; ++i) {
       lever[i] = now->p[i] - memory->twisted[body - 1].p[i];
-      column[3 + i] = joint->prismatic ? 0.0 : EC_ARM * joint->multiplier * axis[i];
+      column[3 + i] = joint->prismatic ? 0.0 : tip->arm * joint->multiplier * axis[i];
     }
     ec_cross(axis, lever, column);
     for (i = 0; i < 3; ++i)

@@ -29,7 +29,7 @@ static inline double ec_change(const ec_robot* robot, const double* nominal, int
   }
   for (t = 0; moves && t < robot->tips; ++t) {
     double moved;
-    ec_tip_error(&memory->last_target[t], &memory->target[t], error);
+    ec_tip_error(&memory->last_target[t], &memory->target[t], EC_ARM, error);
     moved = sqrt(ec_dot(error, error) + ec_dot(&error[3], &error[3])) / EC_ARM;
     if (moved > change) change = moved;
   }
@@ -131,8 +131,8 @@ static inline void ec_reach(const ec_robot* robot, const double* nominal, const 
     }
   }
   for (t = 0; t < robot->branches; ++t) memory->search[t].last_left = memory->search[t].left;
-  ec_ease(robot, nominal, torque, support,
-          change < 0.0 || !ec_is_same(torque, support, memory), memory, command, &at_end);
+  ec_ease(robot, nominal, torque, support, change < 0.0 || !ec_is_same(torque, support, memory),
+          memory, command, &at_end);
   *status |= at_end | ec_in_the_way(robot, nominal, command, memory);
   ec_residual(robot, memory, residual);
   for (c = 0; c < robot->coordinates; ++c) memory->last_q[c] = nominal[c];

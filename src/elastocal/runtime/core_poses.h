@@ -78,6 +78,7 @@ typedef struct {
   int branch;  /* group of coordinates that move it, see ec_robot */
   int freedom; /* number of these that move it: six and more can give it any pose nearby */
   int yields;  /* it has fewer, and shares some with a limb of six and more */
+  double arm;  /* m: at which its turns count; see EC_ARM_OF_FEW */
 } ec_tip;
 
 typedef struct {

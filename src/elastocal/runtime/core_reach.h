@@ -19,7 +19,7 @@
 #define EC_LEAST_DAMPING 0.01
 #define EC_LEAST_BESIDE 0.1
 #define EC_MOST_DAMPING 1e6
-/* A tip is reached within this, m or EC_ARM's radians. */
+/* A tip is reached within this, m or its arm's radians. */
 #define EC_REACHED 2e-4
 /* A second start bends joints that are nearer than this to a limit by as much away from it, rad. */
 #define EC_BEND 0.2
@@ -40,7 +40,7 @@ static inline double ec_cost(const ec_robot* robot, int branch, const double* no
     ec_pose now;
     if (tip->branch != branch) continue;
     ec_tip_pose(robot, t, memory, &now);
-    ec_tip_error(&now, &memory->target[t], error);
+    ec_tip_error(&now, &memory->target[t], tip->arm, error);
     square = ec_dot(error, error) + ec_dot(&error[3], &error[3]);
     cost += tip->yields ? EC_SHORT * EC_SHORT * square : square;
     if (!tip->yields && square > *left) *left = square;

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
+
+#include "elastocal/runtime/core_equations.h"
 
 namespace elastocal {
 namespace {
@@ -18,7 +21,34 @@ int RootJoint(const RuntimeModel& model, int body) {
   return joint;
 }
 
+/// By which length the turns of the end of each limb count. Limbs of one branch that ask for more
+/// than their coordinates can give each miss some of it. Where feet are flat, and where a neck
+/// looks, must not suffer for that; of an arm, the place counts more.
+void WeighTurns(int branches, RuntimeModel& model) {
+  std::vector<std::size_t> asked(static_cast<std::size_t>(branches), 0);
+  std::vector<std::set<int>> moving(asked.size());  // coordinates
+  for (const ec_tip& tip : model.tips) {
+    if (tip.yields != 0) continue;
+    asked[static_cast<std::size_t>(tip.branch)] += 6;
+    for (int body = tip.frame.body; body > 0;) {
+      const ec_joint& joint = model.calibrated[static_cast<std::size_t>(body - 1)];
+      moving[static_cast<std::size_t>(tip.branch)].insert(joint.coordinate);
+      body = joint.parent;
+    }
+  }
+  for (ec_tip& tip : model.tips) {
+    const auto branch = static_cast<std::size_t>(tip.branch);
+    tip.arm = tip.foot < 0 && IsArm(tip) && moving[branch].size() < asked[branch] ? EC_ARM_OF_FEW
+                                                                                  : EC_ARM;
+  }
+}
+
 }  // namespace
+
+bool IsArm(const ec_tip& tip) {
+  constexpr int kFewestJoints = 4;
+  return tip.yields == 0 && tip.freedom >= kFewestJoints;
+}
 
 RuntimeBranches FindBranches(RuntimeModel& model) {
   RuntimeBranches branches;
@@ -50,6 +80,7 @@ RuntimeBranches FindBranches(RuntimeModel& model) {
     };
     tip.yields = tip.freedom < 6 && std::any_of(model.tips.begin(), model.tips.end(), longer);
   }
+  WeighTurns(static_cast<int>(branches.branch_size.size()), model);
   return branches;
 }
 

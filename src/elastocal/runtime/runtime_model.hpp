@@ -46,9 +46,13 @@ struct RuntimeBranches {
   std::vector<int> branch_of_coordinate, column_of_coordinate, branch_size;
 };
 
-/// Sets the branch of each tip (the joint at the root that carries it), and finds the coordinates
-/// of each branch.
+/// Sets the branch of each tip (the joint at the root that carries it) and how the angles of the
+/// tip count, and finds the coordinates of each branch.
 RuntimeBranches FindBranches(RuntimeModel& model);
+
+/// Whether a limb can place its end. A limb of fewer joints only points (a neck), and so does one
+/// that yields. Call it after FindBranches.
+bool IsArm(const ec_tip& tip);
 
 /// Write and read the file of a model. Reading throws std::runtime_error that names file, entry,
 /// what was found and what was expected, also for a model whose indices or sizes do not fit
