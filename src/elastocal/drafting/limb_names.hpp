@@ -17,6 +17,10 @@ std::vector<std::string> WordsOf(const std::string& name);
 /// left.
 int SideByNames(const RobotTree& tree, const Limb& limb);
 
+/// Whether the names of a limb's own joints or tip are those of an arm ("elbow", "wrist", "hand"),
+/// and none is that of a leg. (Shoulders have four-legged robots as well.)
+bool IsArmByNames(const RobotTree& tree, const Limb& limb);
+
 /// "left_leg" and the like: the side by the names in the URDF where they say one, since a root link
 /// may face any way, and by where the tip is in the zero posture otherwise.
 std::string NameLimb(const RobotTree& tree, const std::vector<Limb>& limbs, const Limb& limb);
