@@ -139,6 +139,23 @@ TEST_F(RecordingsApart, TrialsOfAnotherRobotAreNamed) {
   EXPECT_NE(two.find("monday/leg_left, monday/leg_right ("), std::string::npos) << two;
 }
 
+// One of fifteen: the others are put together at once, but for the half that it is in.
+TEST_F(RecordingsApart, AForeignTrialIsFoundAmongMany) {
+  const Recording foreign = Record(other_, "c", 2);
+  Recording third = Record(truth_, "c", 2);
+  for (int i = 0; i < third.posture_count(); ++i) {
+    if (third.trials[Size(third.trial[Size(i)])].name != "c/leg_left") continue;
+    third.q.row(i) = foreign.q.row(i);
+    third.markers.row(i) = foreign.markers.row(i);
+    third.torques.row(i) = foreign.torques.row(i);
+  }
+  Recording all = JoinTrials(JoinTrials(Record(truth_, "a", 0), Record(truth_, "b", 1)), third);
+  for (Trial& trial : all.trials) trial.session = 0;
+  ASSERT_EQ(all.trials.size(), 15u);
+  const std::string said = SaidOf(all);
+  EXPECT_NE(said.find("; another one c/leg_left ("), std::string::npos) << said;
+}
+
 // Before the trial of the other leg: it takes less than half of the squares, and robots of their
 // own explain each trial as well.
 TEST_F(RecordingsApart, AJointThatWasHomedAnewIsFoundInAnyTrial) {

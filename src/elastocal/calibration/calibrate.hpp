@@ -115,7 +115,8 @@ CalibrationResult Calibrate(const ErrorModel& model, const Recording& recording,
 /// Fits only waist and marker positions to a recording, the joints' errors being given by name
 /// [rad or m]: what it takes to use a calibration on another day. Names of joints that move no
 /// marker of this recording are passed over. Result of kind kUncalibrated with the joints' errors
-/// in `delta`.
+/// in `delta`. Of long motions, a part of the moments tells noise and markers; all of them then
+/// correct both, and are judged.
 CalibrationResult RefitExternals(const ErrorModel& model, const Recording& recording,
                                  const BaseParameters& base, const CalibrationOptions& options,
                                  const std::map<std::string, double>& joint_errors,

@@ -8,7 +8,10 @@
 namespace elastocal {
 
 /// All postures that are held, and at most so many moments of motions, evenly: motions are sampled
-/// far more densely, so that fewer moments tell as much. A table is thinned by EvenlyThinned.
+/// far more densely, so that fewer moments tell as much. Of a recording of trials; ascending.
+std::vector<int> ThinnedMotions(const Recording& recording, int most);
+
+/// These postures. A table is thinned by EvenlyThinned.
 Recording WithThinnedMotions(const Recording& recording, int most);
 
 /// Postures by which a correction of a recording can be tried before all of them are: those of rest

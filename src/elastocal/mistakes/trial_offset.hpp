@@ -20,8 +20,7 @@ enum class OffsetTrials { kFarOff, kAny };
 /// Nothing unless one leaves half of the error, and none without which held-out trials, which do
 /// not have it, are predicted worse: what explains the estimate's trials alone is something else
 /// that the model lacks. `held_out` may be empty. kAny: where trials contradict each other, a fit
-/// has spread the offset over all of them; the offsets of all joints in each trial are estimated,
-/// of 12 trials at the most.
+/// has spread the offset over all of them; the offsets of all joints in every trial are estimated.
 std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
                                               const BaseParameters& base,
                                               const Recording& recording,

@@ -40,10 +40,10 @@ bool AreApart(double error_apart, double error_together);
 /// robots of their own leave far less (AreApart). What a trial exercises and no model
 /// explains seldom fits alone; an error that is the same throughout a trial does. Sets of
 /// trials that one robot explains (what is left is nearer to the error of all apart than to that of
-/// all together, by their ratio, and no more than three times that of all apart) are put together
-/// trial by trial. Trials that have too few equations are not judged; nothing is where more than 12
-/// are. `recording`: that of `together`; `most`: what another explanation of the recording leaves,
-/// m.
+/// all together, by their ratio, and no more than three times that of all apart) are put together:
+/// all at once or, where that fails, halves of them. Trials that have too few equations are not
+/// judged; nothing is where more than 50 are. `recording`: that of `together`; `most`: what another
+/// explanation of the recording leaves, m.
 std::optional<PartsApart> FindTrialsApart(const RecordedModel& robot, const Recording& recording,
                                           const CalibrationResult& together, double most,
                                           const CalibrationOptions& options);
