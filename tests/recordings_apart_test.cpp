@@ -14,6 +14,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/mistakes/find_faults.hpp"
+#include "elastocal/mistakes/placed_offset.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/trial_offset.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
@@ -24,8 +25,9 @@ namespace {
 
 class RecordingsApart : public testing::Test {
  protected:
-  Recording Record(const Eigen::VectorXd& truth, const std::string& folder, int session) const {
-    Recording recording = robot_.Record(truth, {.marker_sd = 2e-4,
+  Recording Record(const Eigen::VectorXd& truth, const std::string& folder, int session,
+                   double marker_sd = 2e-4) const {
+    Recording recording = robot_.Record(truth, {.marker_sd = marker_sd,
                                                 .torque_sd = 0.1,
                                                 .torque_sensors = robot_.project.torque_sensors,
                                                 .seed = 1 + static_cast<std::uint64_t>(session)});
@@ -178,6 +180,45 @@ TEST_F(RecordingsApart, AJointThatWasHomedAnewIsFoundInAnyTrial) {
   ASSERT_NE(said.find(name), std::string::npos) << said;
   const double corrected = std::stod(said.substr(said.find(name) + name.size()));  // degrees
   EXPECT_NEAR(corrected, 0.06 * 180.0 / M_PI, 0.1) << said;
+}
+
+// Two trials show the joint: off in the one, or by the opposite in the other. Held-out trials tell.
+TEST_F(RecordingsApart, AnOffsetIsInTheTrialThatContradictsHeldOutOnes) {
+  const auto of_legs = [&](const std::string& folder, int session) {
+    // Little noise: the attitude of a foot magnifies it by the length of the leg.
+    const Recording all = Record(truth_, folder, session, 3e-5);
+    std::vector<int> postures;
+    for (int i = 0; i < all.posture_count(); ++i) {
+      const std::string& name = all.trials[Size(all.trial[Size(i)])].name;
+      if (name.find("/leg_") != std::string::npos) postures.push_back(i);
+    }
+    return SelectPostures(all, postures);
+  };
+  Recording recording = of_legs("monday", 0);
+  const RobotTree& tree = robot_.project.tree;
+  const int joint = tree.joints[FindJoint(tree, "leg_left_3_joint")].coordinate;
+  const auto in_trial = [&](const std::string& name, double size) {
+    RecordingFault fault{.kind = FaultKind::kJointOffset, .coordinate = joint, .size = size};
+    while (recording.trials[Size(recording.trial[Size(fault.posture)])].name != name) {
+      ++fault.posture;
+    }
+    fault.trial = recording.trial[Size(fault.posture)];
+    return fault;
+  };
+  const RecordingFault left = in_trial("monday/leg_left", -0.02);
+  const RecordingFault right = in_trial("monday/leg_right", 0.02);
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    if (recording.trial[Size(i)] == left.trial) recording.q(i, joint) += left.size;
+  }
+  const GeneralFault general{
+      right, robot_.model,         robot_.base, recording, ModelKinds(robot_.model).back(),
+      {},    of_legs("tuesday", 1)};
+  for (const RecordingFault& named : {left, right}) {
+    const PlacedOffset placed = PlaceOffset(named, general);
+    EXPECT_TRUE(placed.told);
+    EXPECT_EQ(placed.fault.trial, left.trial);
+    EXPECT_NEAR(placed.fault.size, left.size, 2e-3);
+  }
 }
 
 TEST_F(RecordingsApart, MarkersThatWereGluedOnAnewAreNoOtherRobot) {

@@ -36,6 +36,7 @@ struct FaultsInWords {
   bool complete = false;  ///< few faults explain the recording
   double left = 0.0;      ///< rms distance of the markers from a robot fitted without them, m
   std::vector<RecordingFault> faults = {};
+  bool placed = false;  ///< held-out trials tell in which trial the joint is off (PlaceOffset)
 };
 
 /// The same, once it is known whether it is the only one. What explains most need not be what is

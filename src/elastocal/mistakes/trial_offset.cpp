@@ -140,8 +140,8 @@ std::vector<RecordingFault> OffsetsBesideErrors(const CalibrationResult& result,
   return measured;
 }
 
-/// rms distance of the markers of held-out trials, waist and markers being fitted to them, m; none
-/// where there are too few for that.
+}  // namespace
+
 std::optional<double> ErrorOnHeldOut(const CalibrationResult& result, const BaseParameters& base,
                                      const Recording& held_out, const CalibrationOptions& options) {
   Recording few = WithThinnedMotions(held_out, kMostOfMotions);
@@ -157,8 +157,6 @@ std::optional<double> ErrorOnHeldOut(const CalibrationResult& result, const Base
     return std::nullopt;
   }
 }
-
-}  // namespace
 
 std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
                                               const BaseParameters& base,

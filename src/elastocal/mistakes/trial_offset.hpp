@@ -28,4 +28,9 @@ std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
                                               const Recording& held_out = {},
                                               OffsetTrials in = OffsetTrials::kFarOff);
 
+/// rms distance of the markers of held-out trials, waist and markers being fitted to them, m; none
+/// where there are too few for that. Moments of motions are thinned.
+std::optional<double> ErrorOnHeldOut(const CalibrationResult& result, const BaseParameters& base,
+                                     const Recording& held_out, const CalibrationOptions& options);
+
 }  // namespace elastocal
