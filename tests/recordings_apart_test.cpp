@@ -13,11 +13,14 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/mistakes/find_contradictions.hpp"
 #include "elastocal/mistakes/find_faults.hpp"
 #include "elastocal/mistakes/placed_offset.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/trial_offset.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
+#include "elastocal/validation/held_out.hpp"
+#include "elastocal/validation/model_comparison.hpp"
 #include "tests/standing_humanoid.hpp"
 
 namespace elastocal {
@@ -219,6 +222,29 @@ TEST_F(RecordingsApart, AnOffsetIsInTheTrialThatContradictsHeldOutOnes) {
     EXPECT_EQ(placed.fault.trial, left.trial);
     EXPECT_NEAR(placed.fault.size, left.size, 2e-3);
   }
+}
+
+// All of its clusters are elsewhere: none of them was knocked.
+TEST_F(RecordingsApart, HeldOutTrialsOfAnotherRobotAreSaidToBe) {
+  const Recording own = Record(truth_, "monday", 0);
+  const auto said = [&](const Recording& held_out) {
+    ModelComparison comparison;
+    comparison.kinds = {ModelKind::kUncalibrated, ModelKinds(robot_.model).back()};
+    for (const ModelKind kind : comparison.kinds) {
+      comparison.results[static_cast<std::size_t>(kind)] =
+          Calibrate(robot_.model, own, robot_.base, kind, {});
+    }
+    const ErrorTable table = JudgeOnTrials(comparison, held_out, {}).table;
+    std::string all;
+    for (const std::string& one : FindContradictions(robot_.project, {robot_.model, robot_.base},
+                                                     own, held_out, comparison, table)) {
+      all += one + "\n";
+    }
+    return all;
+  };
+  EXPECT_EQ(said(Record(truth_, "friday", 1)), "");
+  const std::string other = said(Record(other_, "friday", 1));
+  EXPECT_NE(other.find("robots of their own"), std::string::npos) << other;
 }
 
 TEST_F(RecordingsApart, MarkersThatWereGluedOnAnewAreNoOtherRobot) {
