@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Estimates from moments of a motion, which share their model error with their neighbours in time.
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -307,6 +310,50 @@ TEST(Motion, ErrorsThatLastAreNoKnocks) {
   EXPECT_EQ(knocks[0].cluster, "LSHANK");
   EXPECT_NEAR(knocks[0].posture, 80, 2);
   EXPECT_NEAR(knocks[0].distance, 4e-3, 1e-3);
+}
+
+// Most moments of a long motion tell hardly more of waist and markers: a part of them tells noise
+// and markers, and few updates with all of them name what is wrong in any.
+TEST(Motion, FewUpdatesRefitMarkersToLongMotions) {
+  constexpr int kWrong = 200;  // a moment that is not in the part
+  SlowLegs legs;
+  for (PlayedTrial& trial : legs.robot.trials) {
+    if (!trial.trial.moments) continue;
+    const Eigen::MatrixXd ways = trial.q;
+    trial.q.resize(3 * ways.rows(), ways.cols());
+    for (Eigen::Index i = 0; i < trial.q.rows(); ++i) {
+      const double way = static_cast<double>(i % 3) / 3.0;
+      const Eigen::Index next = std::min(i / 3 + 1, ways.rows() - 1);
+      trial.q.row(i) = (1.0 - way) * ways.row(i / 3) + way * ways.row(next);
+    }
+  }
+  Recording recording = RecordWays(legs, 0.1e-3, Eigen::Vector3d::Zero(), 1);
+  ASSERT_EQ(recording.posture_count(), 900);
+  int wrong = 0;
+  while (!Seen(recording, kWrong, wrong)) ++wrong;
+  recording.markers(kWrong, 3 * wrong) += 20e-3;
+  std::map<std::string, double> joints;
+  for (int i = 0; i < legs.robot.model.parameter_count(); ++i) {
+    const Parameter& parameter = legs.robot.model.parameters[i];
+    if (!IsExternal(parameter.kind)) joints[parameter.name] = legs.truth[i];
+  }
+  const CalibrationResult refit =
+      RefitExternals(legs.robot.model, recording, legs.robot.base, {}, joints);
+  EXPECT_EQ(refit.termination, Termination::kConverged);
+  EXPECT_LT(refit.iterations, 25) << "175 where all moments tell the noise";
+  const auto named = [&](const Outlier& one) {
+    return one.posture == kWrong && one.marker == wrong;
+  };
+  EXPECT_TRUE(std::ranges::any_of(refit.outliers, named));
+  double off = 0.0, expected = 0.0;
+  for (int i = 0; i < refit.model.parameter_count(); ++i) {
+    if (refit.model.parameters[i].kind != ParameterKind::kMarker || !(refit.sd[i] > 0.0)) continue;
+    if (refit.status[i] != ParameterStatus::kEstimated) continue;
+    off += std::pow((refit.delta[i] - legs.truth[i]) / refit.sd[i], 2);
+    ++expected;
+  }
+  EXPECT_GT(expected, 50.0);
+  EXPECT_LT(std::sqrt(off / expected), 2.0) << "in standard deviations";
 }
 
 // What shares its error with a left-out moment is left out as well.

@@ -13,10 +13,14 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/random.hpp"
+#include "elastocal/mistakes/find_contradictions.hpp"
 #include "elastocal/mistakes/find_faults.hpp"
+#include "elastocal/mistakes/placed_offset.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/trial_offset.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
+#include "elastocal/validation/held_out.hpp"
+#include "elastocal/validation/model_comparison.hpp"
 #include "tests/standing_humanoid.hpp"
 
 namespace elastocal {
@@ -24,8 +28,9 @@ namespace {
 
 class RecordingsApart : public testing::Test {
  protected:
-  Recording Record(const Eigen::VectorXd& truth, const std::string& folder, int session) const {
-    Recording recording = robot_.Record(truth, {.marker_sd = 2e-4,
+  Recording Record(const Eigen::VectorXd& truth, const std::string& folder, int session,
+                   double marker_sd = 2e-4) const {
+    Recording recording = robot_.Record(truth, {.marker_sd = marker_sd,
                                                 .torque_sd = 0.1,
                                                 .torque_sensors = robot_.project.torque_sensors,
                                                 .seed = 1 + static_cast<std::uint64_t>(session)});
@@ -139,6 +144,23 @@ TEST_F(RecordingsApart, TrialsOfAnotherRobotAreNamed) {
   EXPECT_NE(two.find("monday/leg_left, monday/leg_right ("), std::string::npos) << two;
 }
 
+// One of fifteen: the others are put together at once, but for the half that it is in.
+TEST_F(RecordingsApart, AForeignTrialIsFoundAmongMany) {
+  const Recording foreign = Record(other_, "c", 2);
+  Recording third = Record(truth_, "c", 2);
+  for (int i = 0; i < third.posture_count(); ++i) {
+    if (third.trials[Size(third.trial[Size(i)])].name != "c/leg_left") continue;
+    third.q.row(i) = foreign.q.row(i);
+    third.markers.row(i) = foreign.markers.row(i);
+    third.torques.row(i) = foreign.torques.row(i);
+  }
+  Recording all = JoinTrials(JoinTrials(Record(truth_, "a", 0), Record(truth_, "b", 1)), third);
+  for (Trial& trial : all.trials) trial.session = 0;
+  ASSERT_EQ(all.trials.size(), 15u);
+  const std::string said = SaidOf(all);
+  EXPECT_NE(said.find("; another one c/leg_left ("), std::string::npos) << said;
+}
+
 // Before the trial of the other leg: it takes less than half of the squares, and robots of their
 // own explain each trial as well.
 TEST_F(RecordingsApart, AJointThatWasHomedAnewIsFoundInAnyTrial) {
@@ -161,6 +183,68 @@ TEST_F(RecordingsApart, AJointThatWasHomedAnewIsFoundInAnyTrial) {
   ASSERT_NE(said.find(name), std::string::npos) << said;
   const double corrected = std::stod(said.substr(said.find(name) + name.size()));  // degrees
   EXPECT_NEAR(corrected, 0.06 * 180.0 / M_PI, 0.1) << said;
+}
+
+// Two trials show the joint: off in the one, or by the opposite in the other. Held-out trials tell.
+TEST_F(RecordingsApart, AnOffsetIsInTheTrialThatContradictsHeldOutOnes) {
+  const auto of_legs = [&](const std::string& folder, int session) {
+    // Little noise: the attitude of a foot magnifies it by the length of the leg.
+    const Recording all = Record(truth_, folder, session, 3e-5);
+    std::vector<int> postures;
+    for (int i = 0; i < all.posture_count(); ++i) {
+      const std::string& name = all.trials[Size(all.trial[Size(i)])].name;
+      if (name.find("/leg_") != std::string::npos) postures.push_back(i);
+    }
+    return SelectPostures(all, postures);
+  };
+  Recording recording = of_legs("monday", 0);
+  const RobotTree& tree = robot_.project.tree;
+  const int joint = tree.joints[FindJoint(tree, "leg_left_3_joint")].coordinate;
+  const auto in_trial = [&](const std::string& name, double size) {
+    RecordingFault fault{.kind = FaultKind::kJointOffset, .coordinate = joint, .size = size};
+    while (recording.trials[Size(recording.trial[Size(fault.posture)])].name != name) {
+      ++fault.posture;
+    }
+    fault.trial = recording.trial[Size(fault.posture)];
+    return fault;
+  };
+  const RecordingFault left = in_trial("monday/leg_left", -0.02);
+  const RecordingFault right = in_trial("monday/leg_right", 0.02);
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    if (recording.trial[Size(i)] == left.trial) recording.q(i, joint) += left.size;
+  }
+  const GeneralFault general{
+      right, robot_.model,         robot_.base, recording, ModelKinds(robot_.model).back(),
+      {},    of_legs("tuesday", 1)};
+  for (const RecordingFault& named : {left, right}) {
+    const PlacedOffset placed = PlaceOffset(named, general);
+    EXPECT_TRUE(placed.told);
+    EXPECT_EQ(placed.fault.trial, left.trial);
+    EXPECT_NEAR(placed.fault.size, left.size, 2e-3);
+  }
+}
+
+// All of its clusters are elsewhere: none of them was knocked.
+TEST_F(RecordingsApart, HeldOutTrialsOfAnotherRobotAreSaidToBe) {
+  const Recording own = Record(truth_, "monday", 0);
+  const auto said = [&](const Recording& held_out) {
+    ModelComparison comparison;
+    comparison.kinds = {ModelKind::kUncalibrated, ModelKinds(robot_.model).back()};
+    for (const ModelKind kind : comparison.kinds) {
+      comparison.results[static_cast<std::size_t>(kind)] =
+          Calibrate(robot_.model, own, robot_.base, kind, {});
+    }
+    const ErrorTable table = JudgeOnTrials(comparison, held_out, {}).table;
+    std::string all;
+    for (const std::string& one : FindContradictions(robot_.project, {robot_.model, robot_.base},
+                                                     own, held_out, comparison, table)) {
+      all += one + "\n";
+    }
+    return all;
+  };
+  EXPECT_EQ(said(Record(truth_, "friday", 1)), "");
+  const std::string other = said(Record(other_, "friday", 1));
+  EXPECT_NE(other.find("robots of their own"), std::string::npos) << other;
 }
 
 TEST_F(RecordingsApart, MarkersThatWereGluedOnAnewAreNoOtherRobot) {

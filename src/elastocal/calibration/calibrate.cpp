@@ -6,13 +6,16 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "elastocal/calibration/fit.hpp"
 #include "elastocal/calibration/registration.hpp"
 #include "elastocal/calibration/residuals.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/measurement/thinned_motions.hpp"
 
 namespace elastocal {
 namespace {
@@ -22,6 +25,8 @@ constexpr int kFewUpdates = 2;  // updates of the noise when only a start is nee
 // Updates of the noise where only waist and markers are estimated. The joints are then wrong, which
 // no noise describes, so that the noise would hardly come to rest.
 constexpr int kExternalUpdates = 15;
+constexpr int kMostMoments = 300;  // of motions, by which waist and markers are estimated first
+constexpr int kLastUpdates = 3;    // of the noise, once a part of the moments has told it
 
 bool IsEstimated(ParameterKind parameter, ModelKind kind) {
   if (IsExternal(parameter)) return true;
@@ -204,7 +209,7 @@ OutlierVerdict JudgeOutliers(const FitProblem& problem, const Selection& selecti
 /// few equations would be left, all observations are kept: so many cannot all be outliers, and the
 /// true cause is not known yet.
 OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& base,
-                              const std::vector<int>& free, OutlierVerdict verdict,
+                              const std::vector<int>& free, int updates, OutlierVerdict verdict,
                               Selection& selection, Fit& fit, bool& too_many) {
   const auto fit_to = [&](const OutlierVerdict& without) {
     if (problem.options.outliers == OutlierPolicy::kRemove) {
@@ -214,7 +219,7 @@ OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& b
       fit.weights = WeightsIn(next, selection, fit.weights);
       selection = std::move(next);
     }
-    fit = FitParameters(problem, selection, free, fit, Robustness::kMoments);
+    fit = FitParameters(problem, selection, free, fit, Robustness::kMoments, updates);
   };
   std::vector<OutlierVerdict> earlier;
   for (;;) {
@@ -237,26 +242,37 @@ OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& b
   }
 }
 
-/// Steps 2 and 3 of Calibrate, starting from a fit of waist and markers.
+/// What a part of the recording tells of waist, markers and noise.
+struct ToldByPart {
+  Eigen::VectorXd delta;
+  Noise noise;  ///< by group of the whole recording
+  bool settled = true;
+  bool correlated = false;  ///< errors in motions, as far as they came to rest
+};
+
+/// Steps 2 and 3 of Calibrate, starting from a fit of waist and markers. `told` has the noise
+/// already, where it is given.
 void EstimateAll(const FitProblem& problem, const BaseParameters& base,
-                 const std::vector<int>& free, const Selection* fixed, Fit fit,
-                 CalibrationResult& result) {
+                 const std::vector<int>& free, const Selection* fixed, const ToldByPart* told,
+                 Fit fit, CalibrationResult& result) {
   const Recording& recording = problem.recording;
   Selection selection = fixed != nullptr ? *fixed : SelectAll(problem.model, recording);
   OutlierVerdict verdict;
   CheckEquations(problem, fit.placement, selection, base, free);
-  if (fixed == nullptr) {
-    fit = FitParameters(problem, selection, free, fit, Robustness::kMedians);
-    verdict = JudgeOutliers(problem, selection, free, fit);
-  }
+  const bool joints = result.kind != ModelKind::kUncalibrated;
+  const int updates = told != nullptr              ? kLastUpdates
+                      : joints || fixed == nullptr ? kMaxUpdates
+                                                   : kExternalUpdates;
   if (fixed != nullptr) {
-    const bool joints = result.kind != ModelKind::kUncalibrated;
-    fit = FitParameters(problem, selection, free, fit, Robustness::kMoments,
-                        joints ? kMaxUpdates : kExternalUpdates);
+    fit = FitParameters(problem, selection, free, fit, Robustness::kMoments, updates);
   } else {
-    verdict = SettleOutliers(problem, base, free, std::move(verdict), selection, fit,
+    fit = FitParameters(problem, selection, free, fit,
+                        told != nullptr ? Robustness::kMoments : Robustness::kMedians, updates);
+    verdict = JudgeOutliers(problem, selection, free, fit);
+    verdict = SettleOutliers(problem, base, free, updates, std::move(verdict), selection, fit,
                              result.too_many_outliers);
   }
+  if (told != nullptr && told->correlated) CorrelateMotions(problem, selection, free, fit);
   Polish(problem, selection, free, fit);
   UpdatePosterior(problem, selection, free, fit);
   result.outliers = std::move(verdict.markers);
@@ -271,10 +287,11 @@ void EstimateAll(const FitProblem& problem, const BaseParameters& base,
   FillResult(base, problem.options, std::move(fit), result);
 }
 
-/// All steps of Calibrate. Parameters that are not estimated keep their value in `delta`.
+/// All steps of Calibrate. Parameters that are not estimated keep their value in `delta`. `told`,
+/// where it is given, takes the place of step 1 and of the medians.
 void Estimate(const ErrorModel& model, const Recording& recording, const BaseParameters& base,
               const CalibrationOptions& options, const Selection* fixed,
-              const Eigen::VectorXd& delta, CalibrationResult& result) {
+              const Eigen::VectorXd& delta, const ToldByPart* told, CalibrationResult& result) {
   result.model = model;
   const bool waist_moves = HasPoseByPosture(recording);
   // T0 starts at zero.
@@ -283,13 +300,53 @@ void Estimate(const ErrorModel& model, const Recording& recording, const BasePar
   const FitProblem problem{result.model, recording, options, result.group};
   const Selection selection = fixed != nullptr ? *fixed : SelectAll(model, recording);
   const std::vector<int> externals = OfKind(model, base, ModelKind::kUncalibrated, waist_moves);
-  const Fit start = StartFit(problem, selection, delta);
+  Fit start = StartFit(problem, selection, told != nullptr ? told->delta : delta);
   if (waist_moves) FindFootings(model, recording, options.slip, &result.slips);
   CheckEquations(problem, start.placement, selection, base, externals);
+  const std::vector<int> free = OfKind(model, base, result.kind, waist_moves);
+  if (told != nullptr) {
+    start.noise = told->noise;
+    start.settled = told->settled;
+    EstimateAll(problem, base, free, fixed, told, start, result);
+    return;
+  }
   const Fit fit =
       FitParameters(problem, selection, externals, start,
                     fixed == nullptr ? Robustness::kMedians : Robustness::kMoments, kFewUpdates);
-  EstimateAll(problem, base, OfKind(model, base, result.kind, waist_moves), fixed, fit, result);
+  EstimateAll(problem, base, free, fixed, nullptr, fit, result);
+}
+
+/// What the part of a recording with fewer moments of motions tells of waist and markers: most of
+/// them tell hardly more. None where the part is not much smaller, or has no posture of some group.
+std::optional<ToldByPart> TellByFewMoments(const ErrorModel& model, const Recording& recording,
+                                           const BaseParameters& base,
+                                           const CalibrationOptions& options,
+                                           const Selection* fixed, const Eigen::VectorXd& delta) {
+  if (recording.trials.empty() || !HasPoseByPosture(recording)) return std::nullopt;
+  const std::vector<int> kept = ThinnedMotions(recording, kMostMoments);
+  if (2 * std::ssize(kept) > recording.posture_count()) return std::nullopt;
+  const Recording part = SelectPostures(recording, kept);
+  std::optional<Selection> of_part;
+  if (fixed != nullptr) {
+    std::vector<char> tied;
+    for (const int i : kept) tied.push_back(fixed->tied[Size(i)]);
+    of_part = Select(model, part, fixed->markers(kept, Eigen::all), std::move(tied));
+  }
+  CalibrationResult few;
+  few.kind = ModelKind::kUncalibrated;
+  try {
+    Estimate(model, part, base, options, of_part ? &*of_part : nullptr, delta, nullptr, few);
+  } catch (const InputError&) {  // too few equations
+    return std::nullopt;
+  }
+  const std::vector<int> groups = NoiseGroups(model, recording);
+  ToldByPart told{few.delta, {}, few.settled, !few.noise.motion.empty()};
+  told.noise.sd.setConstant(1 + *std::ranges::max_element(groups), kNoiseSourceCount, kNaN);
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    told.noise.sd.row(groups[Size(kept[k])]) = few.noise.sd.row(few.group[k]);
+  }
+  if (!told.noise.sd.allFinite()) return std::nullopt;
+  return told;
 }
 
 template <typename Work>
@@ -305,50 +362,12 @@ CalibrationResult Timed(ModelKind kind, Work work) {
 
 }  // namespace
 
-const char* ModelKindName(ModelKind kind) {
-  switch (kind) {
-    case ModelKind::kUncalibrated:
-      return "uncalibrated";
-    case ModelKind::kOffsetsOnly:
-      return "offsets_only";
-    case ModelKind::kGeometric:
-      return "geometric";
-    case ModelKind::kRigid:
-      return "rigid";
-    default:
-      return "full";
-  }
-}
-
-std::vector<ModelKind> ModelKinds(const ErrorModel& model) {
-  std::vector<ModelKind> kinds = {ModelKind::kUncalibrated, ModelKind::kOffsetsOnly,
-                                  ModelKind::kGeometric};
-  const auto elastic = [](const Parameter& parameter) { return IsElastic(parameter.kind); };
-  if (std::any_of(model.parameters.begin(), model.parameters.end(), elastic)) {
-    kinds.insert(kinds.end(), {ModelKind::kRigid, ModelKind::kFull});
-  }
-  return kinds;
-}
-
-const char* StatusName(ParameterStatus status) {
-  switch (status) {
-    case ParameterStatus::kEstimated:
-      return "estimated";
-    case ParameterStatus::kUnsupported:
-      return "unsupported";
-    case ParameterStatus::kHeld:
-      return "held";
-    default:
-      return "not_in_model";
-  }
-}
-
 CalibrationResult Calibrate(const ErrorModel& model, const Recording& recording,
                             const BaseParameters& base, ModelKind kind,
                             const CalibrationOptions& options, const Selection* fixed) {
   return Timed(kind, [&](CalibrationResult& result) {
     const Eigen::VectorXd nominal = Eigen::VectorXd::Zero(model.parameter_count());
-    Estimate(model, recording, base, options, fixed, nominal, result);
+    Estimate(model, recording, base, options, fixed, nominal, nullptr, result);
   });
 }
 
@@ -363,7 +382,8 @@ CalibrationResult RefitExternals(const ErrorModel& model, const Recording& recor
     if (!IsExternal(parameter.kind) && error != joint_errors.end()) delta[i] = error->second;
   }
   return Timed(ModelKind::kUncalibrated, [&](CalibrationResult& result) {
-    Estimate(model, recording, base, options, fixed, delta, result);
+    const auto told = TellByFewMoments(model, recording, base, options, fixed, delta);
+    Estimate(model, recording, base, options, fixed, delta, told ? &*told : nullptr, result);
   });
 }
 
@@ -378,11 +398,6 @@ CalibrationResult WithoutSprings(const CalibrationResult& full, const ErrorModel
   CalibrationResult rigid = RefitExternals(model, recording, base, options, geometry, &fixed);
   rigid.kind = ModelKind::kRigid;
   return rigid;
-}
-
-bool Significant(const CalibrationResult& result, int parameter) {
-  return result.status[parameter] == ParameterStatus::kEstimated &&
-         std::abs(result.delta[parameter]) > result.interval_factor * result.sd[parameter];
 }
 
 }  // namespace elastocal

@@ -65,6 +65,12 @@ int SideByNames(const RobotTree& tree, const Limb& limb) {
   return votes > 0 ? 1 : votes < 0 ? -1 : 0;
 }
 
+bool IsArmByNames(const RobotTree& tree, const Limb& limb) {
+  return Says(tree, limb, {"arm", "elbow", "forearm", "wrist", "hand", "palm", "gripper"}) &&
+         !Says(tree, limb,
+               {"leg", "hip", "thigh", "knee", "calf", "shank", "ankle", "foot", "sole"});
+}
+
 std::string NameLimb(const RobotTree& tree, const std::vector<Limb>& limbs, const Limb& limb) {
   if (limbs.size() == 1) return "arm";
   const Eigen::Vector3d tip =

@@ -245,7 +245,8 @@ void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb
     const double top = root_on_floor ? LegTop(tree, limb.joints) : 0.0;
     const bool far_below = poses[Size(limb.tip_body)].translation().z() < top - kBelow * longest;
     const bool above = !root_on_floor && BeginOf(tree, poses, limb) > kBelow * longest;
-    limb.leg = limb.mirror >= 0 && far_below && !above && lowest[i] < floor + kSameFloor * longest;
+    limb.leg = limb.mirror >= 0 && far_below && !above &&
+               lowest[i] < floor + kSameFloor * longest && !IsArmByNames(tree, limb);
   }
 }
 

@@ -52,15 +52,17 @@ std::string EndOfNeck(const std::string& urdf) {
   return "";
 }
 
-/// Two limbs that hang from a trunk, so many m from the root link upwards, and a head.
-std::string UpperBody(double trunk_m, double head_m) {
+/// Two limbs that hang from a trunk, so many m from the root link upwards, and a head. The links
+/// are side + "_" + `name` + "1" and so on.
+std::string UpperBody(double trunk_m, double head_m, const std::string& name = "") {
   std::string text = "<robot name='r'>" + LinkText("base") +
                      JointText("base", "trunk", "", "0 0 " + std::to_string(trunk_m));
   for (const std::string side : {"l", "r"}) {
     const std::string y = side == "l" ? "0.2" : "-0.2";
-    text += JointText("trunk", side + "_1", "", "0 " + y + " 0") +
-            JointText(side + "_1", side + "_2", "", "0 0 -0.35") +
-            JointText(side + "_2", side + "_3", "", "0 0 -0.35");
+    const std::string limb = side + "_" + name;
+    text += JointText("trunk", limb + "1", "", "0 " + y + " 0") +
+            JointText(limb + "1", limb + "2", "", "0 0 -0.35") +
+            JointText(limb + "2", limb + "3", "", "0 0 -0.35");
   }
   return text + JointText("trunk", "head", "", "0 0 " + std::to_string(head_m)) + "</robot>";
 }
@@ -74,6 +76,8 @@ int CountLegs(const std::string& urdf) {
 TEST(Limbs, ArmsThatEndLowestAreNoLegs) {
   EXPECT_EQ(CountLegs(UpperBody(0.35, 0.1)), 0) << "shoulders above the root link";
   EXPECT_EQ(CountLegs(UpperBody(-0.1, 0.5)), 2) << "hips";
+  EXPECT_EQ(CountLegs(UpperBody(0.0, 0.1, "arm_")), 0) << "shoulders level with the root link";
+  EXPECT_EQ(CountLegs(UpperBody(-0.1, 0.5, "leg_arm_")), 2) << "a rocker arm of a leg";
 }
 
 TEST(Limbs, GoOnBehindAJointThatFollows) {

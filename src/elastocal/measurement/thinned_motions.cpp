@@ -24,8 +24,7 @@ bool Differ(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, int row) {
 
 }  // namespace
 
-Recording WithThinnedMotions(const Recording& recording, int most) {
-  if (recording.trials.empty()) return EvenlyThinned(recording, most);
+std::vector<int> ThinnedMotions(const Recording& recording, int most) {
   const auto moves = [&](int i) {
     return recording.trials[Size(recording.trial[Size(i)])].of_motion();
   };
@@ -37,7 +36,12 @@ Recording WithThinnedMotions(const Recording& recording, int most) {
   for (int i = 0; i < recording.posture_count(); ++i) {
     if (!moves(i) || moment++ % step == 0) kept.push_back(i);
   }
-  return SelectPostures(recording, kept);
+  return kept;
+}
+
+Recording WithThinnedMotions(const Recording& recording, int most) {
+  if (recording.trials.empty()) return EvenlyThinned(recording, most);
+  return SelectPostures(recording, ThinnedMotions(recording, most));
 }
 
 std::vector<int> FewPostures(const Recording& recorded, const Recording& corrected, int most) {

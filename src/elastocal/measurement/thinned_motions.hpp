@@ -7,9 +7,12 @@
 
 namespace elastocal {
 
-/// Keeps all rests of a recording and at most `most` moments of motions, evenly spaced. Motions are
-/// sampled far more densely than rests, so that fewer moments tell as much. A posture table is
-/// thinned by EvenlyThinned.
+/// All rests of a recording of trials and at most `most` moments of its motions, evenly spaced, as
+/// ascending indices of postures. Motions are sampled far more densely than rests, so that fewer
+/// moments tell as much.
+std::vector<int> ThinnedMotions(const Recording& recording, int most);
+
+/// The recording with these postures only. A posture table is thinned by EvenlyThinned.
 Recording WithThinnedMotions(const Recording& recording, int most);
 
 /// Indices of postures that suffice for a first, quick test of a correction of a recording: all

@@ -44,8 +44,15 @@ double LeastSquares(const std::function<double(double)>& squares, double start) 
   return size;
 }
 
-/// Finds the scale of the cameras. The search begins at the scale of the predicted markers, because
-/// the refit of root and markers has absorbed a part of the true one.
+/// Whether the least of the squares is within `most` of zero, by a parabola about zero.
+bool IsNearZero(const std::function<double(double)>& squares, double most) {
+  const double below = squares(-most), above = squares(most);
+  return std::abs(below - above) < std::max(0.0, 2.0 * (below + above - 2.0 * squares(0.0)));
+}
+
+/// Finds the scale of the cameras; 1 where it is too small to be told. The search begins at the
+/// scale of the predicted markers, because the refit of root and markers has absorbed a part of the
+/// true one.
 double CameraScale(const CheckedCalibration& calibration, const Recording& recording,
                    const CalibrationOptions& options) {
   const CalibrationResult result = calibration.refit(recording).result;
@@ -56,6 +63,7 @@ double CameraScale(const CheckedCalibration& calibration, const Recording& recor
     corrected.markers /= 1.0 + size;
     return SquaresOf(calibration, corrected);
   };
+  if (std::abs(start - 1.0) < kLeastScale && IsNearZero(squares, kLeastScale)) return 1.0;
   return 1.0 + LeastSquares(squares, start - 1.0);
 }
 

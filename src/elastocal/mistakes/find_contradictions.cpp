@@ -18,6 +18,7 @@
 #include "elastocal/mistakes/held_out_contrast.hpp"
 #include "elastocal/mistakes/moved_between.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/trials_apart.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 #include "elastocal/validation/held_out.hpp"
 
@@ -28,8 +29,9 @@ constexpr double kContradicted = 10.0;
 constexpr double kLeftByMistake = 0.3;  // share of the error on held-out trials
 // Updates of the noise for trials that seem to contradict each other.
 constexpr int kUpdatesTogether = 15;
-constexpr int kAtTheSeam = 2;      // postures
-constexpr int kFilterSpreads = 2;  // postures beside exchanged ones, which the filter mixes
+constexpr std::size_t kManyKnocks = 3;  // clusters; all clusters of another robot are elsewhere
+constexpr int kAtTheSeam = 2;           // postures
+constexpr int kFilterSpreads = 2;       // postures beside exchanged ones, which the filter mixes
 
 /// The recording without the markers that knocks added (SplitMarkers), which the project does not
 /// have.
@@ -188,20 +190,44 @@ Recording AsUsed(const Recording& recording, const CalibrationResult& result) {
   return used;
 }
 
-/// Finds a cluster that was knocked between trials or within one, by all trials together, the
-/// held-out ones last; empty: none. The trials of the estimate alone need not show it: if each
-/// shows other limbs, a waist that was knocked between them displaces everything that they show.
-std::string KnockOfAll(const Project& project, const RecordedModel& robot, const Recording& all) {
-  const std::vector<Knock> knocks =
-      FindKnocks(robot.model, all, robot.base, SeenClusters(project, all), project.calibration);
-  if (knocks.empty()) return "";
-  const Knock& knock = knocks.front();
+/// Finds clusters that were knocked between trials or within one, by all trials together, the
+/// held-out ones last. The trials of the estimate alone need not show it: if each shows other
+/// limbs, a waist that was knocked between them displaces everything that they show.
+std::vector<Knock> KnocksOfAll(const Project& project, const RecordedModel& robot,
+                               const Recording& all) {
+  return FindKnocks(robot.model, all, robot.base, SeenClusters(project, all), project.calibration);
+}
+
+std::string DescribeKnockOfAll(const Knock& knock, const Recording& all) {
   return fmt::format(
       "trials for calibration and for validation contradict each other: cluster {} seems to lie "
       "{:.1f} mm elsewhere from {} on than up to {} (trials for validation come last): was it "
       "knocked, or glued on again? Measure again what was recorded before or after it",
       knock.cluster, 1e3 * knock.distance, DescribePosture(all, knock.posture),
       DescribePosture(all, knock.last_before));
+}
+
+/// What says that the held-out trials are of another robot: where they are explained by themselves,
+/// and those of the estimate by themselves, by half of the error that is left of both together (m)
+/// once faults are undone; else empty.
+std::string AnotherRobot(const RecordedModel& robot, const Recording& recording,
+                         const Recording& held_out, const CalibrationResult& estimate, double left,
+                         const CalibrationOptions& options) {
+  std::vector<PartOfRecording> parts(2);
+  for (int i = 0; i < recording.posture_count(); ++i) parts[0].postures.push_back(i);
+  for (int i = 0; i < held_out.posture_count(); ++i) {
+    parts[1].postures.push_back(recording.posture_count() + i);
+  }
+  const std::vector<double> errors = {MarkerError(estimate, recording, options),
+                                      ErrorAlone(robot, held_out, estimate.kind, options)};
+  if (!std::isfinite(errors[1])) return "";
+  const double apart = ErrorOverParts(JoinTrials(recording, held_out), parts, errors);
+  if (!AreApart(apart, left)) return "";
+  return fmt::format(
+      "trials for calibration and for validation contradict each other: one robot leaves an error "
+      "of {:.3g} mm, robots of their own {:.3g} mm and {:.3g} mm. Are they of different robots or "
+      "days, or was the robot changed in between? Measure one of them again",
+      1e3 * left, 1e3 * errors[0], 1e3 * errors[1]);
 }
 
 ErrorTable FittedTable(const Project& project, const Recording& recording,
@@ -286,13 +312,23 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   if (!faults.empty()) {
     const GeneralFault general{
         faults.front(), robot.model, robot.base, all, comparison.largest_kind(), roughly};
-    return {"trials for calibration and for validation contradict each other: " +
-            ExplainFault(general, project).text +
+    const FaultsInWords words = ExplainFault(general, project);
+    if (!words.complete) {
+      const std::string another = AnotherRobot(robot, recording, thinned, comparison.largest(),
+                                               MarkerError(together, all, roughly), roughly);
+      if (!another.empty()) return {another};
+    }
+    return {"trials for calibration and for validation contradict each other: " + words.text +
             OrInThoseOfTheEstimate(faults.front(), all, recording)};
   }
   if (!(std::max(contrast.ratio(), contrast.largest_of_clusters) > kContradicted)) return {};
-  const std::string knock = KnockOfAll(project, robot, all);
-  if (!knock.empty()) return {knock};
+  const std::vector<Knock> knocks = KnocksOfAll(project, robot, all);
+  if (knocks.size() >= kManyKnocks) {
+    const std::string another = AnotherRobot(robot, recording, thinned, comparison.largest(),
+                                             MarkerError(together, all, roughly), roughly);
+    if (!another.empty()) return {another};
+  }
+  if (!knocks.empty()) return {DescribeKnockOfAll(knocks.front(), all)};
   const std::string moved =
       FindMovedBetween(project, together, all, roughly,
                        MovedSuspects(SeenClusters(project, recording), fitted, held_out_table,

@@ -332,7 +332,7 @@ class FaultsInTurn {
       const auto loose = FindSpoilingCluster(project_, robot_, recording_, fit());
       if (!loose.empty()) return loose;
     }
-    if (!found_->of_one_trial || !few_->complete) return {few_->text};
+    if (!found_->of_one_trial || !few_->complete || few_->placed) return {few_->text};
     return {few_->text +
             "; it may as well be off by the opposite in all other trials that show it"};
   }

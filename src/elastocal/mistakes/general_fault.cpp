@@ -16,6 +16,7 @@
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/mistakes/clusters_beside.hpp"
 #include "elastocal/mistakes/placed_gains.hpp"
+#include "elastocal/mistakes/placed_offset.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/recorded/find_base.hpp"
@@ -40,22 +41,6 @@ constexpr std::size_t kSeveral = 2;     // number of joints that begin to be off
 constexpr double kClearlyBetter = 0.8;  // ratio to the error that one joint leaves
 constexpr double kAsWell = 1.1;         // ratio to the error that joints leave
 
-/// Text "; if its scale is right, look at ..." where other joints follow the joint of a gain; else
-/// empty.
-std::string Followers(const RecordingFault& fault, const RobotTree& tree) {
-  const bool joint = fault.coordinate >= 0 && fault.linkage < 0;
-  if (fault.kind != FaultKind::kJointGain || !joint || fault.trial >= 0) return "";
-  std::string names;
-  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
-    const bool own = tree.coordinate_joint[Size(fault.coordinate)] == static_cast<int>(k);
-    if (own || !IsMovedBy(tree.joints[k], fault.coordinate)) continue;
-    names += (names.empty() ? "" : ", ") + tree.joints[k].name;
-  }
-  return names.empty() ? ""
-                       : "; if its scale is right, look at the factors by which " + names +
-                             " follow it (couplings of the project, mimic of the URDF)";
-}
-
 /// Corrects the chosen fault, fits, and searches again.
 class FaultExplanation {
  public:
@@ -65,9 +50,15 @@ class FaultExplanation {
     if (faults_.size() > 1 && Drifts()) TryWithoutDrift();
     if (complete_ && faults_.front().linkage < 0) EstimateTogether();
     if (complete_) faults_ = PlaceGains(faults_, Undone(), general_);
+    if (complete_ && faults_.size() == 1) {
+      const PlacedOffset offset = PlaceOffset(faults_.front(), general_);
+      faults_.front() = offset.fault;
+      placed_ = offset.told;
+    }
   }
 
   bool complete() const { return complete_; }
+  bool placed() const { return placed_; }
   double left() const { return left_; }
   const std::vector<RecordingFault>& faults() const { return faults_; }
 
@@ -367,33 +358,16 @@ class FaultExplanation {
   const Project& project_;
   std::vector<RecordingFault> faults_;
   bool complete_ = false;  ///< nothing is found beside the faults, and they explain the recording
+  bool placed_ = false;    ///< PlacedOffset::told
   double left_ = 0.0;      ///< error of the last fit, m
 };
 
 }  // namespace
 
-std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
-                           const Recording& recording) {
-  const std::string text = DescribeFault(fault, tree, recording);
-  const std::optional<std::string> name = NameOfCorrection(fault, tree, recording);
-  const auto& of = tree.coordinate_joint;
-  const bool slides = fault.kind == FaultKind::kJointGain && fault.coordinate >= 0 &&
-                      tree.joints[Size(of[Size(fault.coordinate)])].type == JointType::kPrismatic;
-  if (name && slides && fault.trial < 0) {
-    const double scale = 1.0 / (1.0 + fault.size);
-    return fmt::format(
-        "{} (--accept {} corrects it; if its scale is right, the cameras' is {:.4f} times the true "
-        "one, which --accept scale={:.5f} corrects: measure a known length)",
-        text, *name, scale, scale);
-  }
-  const std::string followers = Followers(fault, tree);
-  return name ? fmt::format("{} (--accept {} corrects it{})", text, *name, followers)
-              : text + followers;
-}
-
 FaultsInWords ExplainFault(const GeneralFault& general, const Project& project) {
   const FaultExplanation explanation(general, project);
-  return {explanation.Describe(), explanation.complete(), explanation.left(), explanation.faults()};
+  return {explanation.Describe(), explanation.complete(), explanation.left(), explanation.faults(),
+          explanation.placed()};
 }
 
 }  // namespace elastocal

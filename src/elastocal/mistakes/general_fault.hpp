@@ -41,6 +41,7 @@ struct FaultsInWords {
   /// Rms distance of the markers from a robot that is fitted without the faults, m.
   double left = 0.0;
   std::vector<RecordingFault> faults = {};
+  bool placed = false;  ///< held-out trials tell in which trial the joint is off (PlaceOffset)
 };
 
 /// Finds out whether the fault is the only one, and describes the result. The fault that explains

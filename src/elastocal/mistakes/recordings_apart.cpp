@@ -104,6 +104,7 @@ std::optional<PartsApart> FindFoldersApart(const Project& project, const Recorde
                                            const Recording& recording,
                                            const CalibrationResult& together, double most) {
   std::vector<PartOfRecording> folders = FoldersOf(recording);
+  if (folders.size() < 2) return std::nullopt;
   std::vector<double> errors;
   std::erase_if(folders, [&](const PartOfRecording& folder) {
     const double error = ErrorAlone(robot, SelectPostures(recording, folder.postures),

@@ -22,7 +22,7 @@
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/robot/coordinates.hpp"
 #include "elastocal/robot/linkage.hpp"
-#include "elastocal/screening/recording_faults.hpp"
+#include "elastocal/screening/measured_faults.hpp"
 
 namespace elastocal {
 namespace {
@@ -131,21 +131,20 @@ class TransferSearch {
   /// Finds offsets of joints in all postures. FindRecordingFaults takes such an offset for an error
   /// of the robot, but here the robot's errors are known.
   std::vector<RecordingFault> OffsetsInAll() const {
-    std::vector<RecordingFault> offsets;
+    std::vector<RecordingFault> sought;
     const RobotTree& tree = of_.robot.model.tree;
     for (const int k : of_.robot.model.active_joints) {
       const Joint& joint = tree.joints[Size(k)];
       if (joint.mimic || IsMovedByRods(tree, k)) continue;
-      const RecordingFault one =
-          MeasureFault({.kind = FaultKind::kJointOffset, .coordinate = joint.coordinate}, fit(),
-                       of_.recording, options());
-      const bool slides = joint.type == JointType::kPrismatic;
-      const double size = std::abs(one.size);
-      if (size > LeastSize(one.kind, slides) && size < LargestSize(one.kind, slides) &&
-          IsCertain(one)) {
-        offsets.push_back(one);
-      }
+      sought.push_back({.kind = FaultKind::kJointOffset, .coordinate = joint.coordinate});
     }
+    std::vector<RecordingFault> offsets = MeasureFaults(sought, fit(), of_.recording, options());
+    std::erase_if(offsets, [&](const RecordingFault& one) {
+      const bool slides = JointOfCoordinate(tree, one.coordinate).type == JointType::kPrismatic;
+      const double size = std::abs(one.size);
+      return !(size > LeastSize(one.kind, slides)) || !(size < LargestSize(one.kind, slides)) ||
+             !IsCertain(one);
+    });
     return offsets;
   }
 

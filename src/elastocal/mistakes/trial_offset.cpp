@@ -13,9 +13,10 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/thinned_motions.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/robot/linkage.hpp"
 #include "elastocal/screening/distance_parabola.hpp"
-#include "elastocal/screening/recording_faults.hpp"
+#include "elastocal/screening/measured_faults.hpp"
 #include "elastocal/validation/transfer.hpp"
 
 namespace elastocal {
@@ -31,8 +32,6 @@ constexpr int kNewtonSteps = 2;
 constexpr double kLeastCurvature = 1e-12;  // share of the squared distances
 constexpr int kFewestOfTrial = 3;          // postures
 constexpr std::size_t kFewestTrials = 2;
-// Largest number of trials in each of which every joint is measured.
-constexpr std::size_t kMostOfAny = 12;
 
 /// Sums of numbers by posture, for each trial.
 Eigen::VectorXd SumsByTrial(const Eigen::VectorXd& by_posture, const Recording& recording) {
@@ -113,32 +112,37 @@ std::vector<RecordingFault> OffsetsBesideErrors(const CalibrationResult& result,
                                                 const Recording& recording,
                                                 const CalibrationOptions& options,
                                                 const std::vector<TrialOffset>& offsets) {
-  std::vector<RecordingFault> measured;
-  for (std::size_t k = 0; k < offsets.size(); ++k) {
-    RecordingFault fault = offsets[k].fault;
-    const bool known =
-        std::any_of(offsets.begin(), offsets.begin() + static_cast<std::ptrdiff_t>(k),
-                    [&](const TrialOffset& one) { return one.fault.trial == fault.trial; });
-    if (known) continue;
-    for (const int joint : result.model.active_joints) {
-      const Joint& of = result.model.tree.joints[Size(joint)];
-      if (of.mimic || IsMovedByRods(result.model.tree, joint)) continue;
+  std::vector<RecordingFault> one_of_each;  // trial
+  for (const TrialOffset& offset : offsets) {
+    const bool known = std::ranges::any_of(
+        one_of_each, [&](const RecordingFault& one) { return one.trial == offset.fault.trial; });
+    if (!known) one_of_each.push_back(offset.fault);
+  }
+  if (one_of_each.empty()) return {};
+  std::vector<RecordingFault> sought;
+  for (const int joint : result.model.active_joints) {
+    const Joint& of = result.model.tree.joints[Size(joint)];
+    if (of.mimic || IsMovedByRods(result.model.tree, joint)) continue;
+    for (RecordingFault fault : one_of_each) {
       fault.coordinate = of.coordinate;
-      const RecordingFault one = MeasureFault(fault, result, recording, options);
-      const bool slides = of.type == JointType::kPrismatic;
-      const bool matters = std::abs(one.size) > LeastSize(one.kind, slides) &&
-                           std::abs(one.size) < LargestSize(one.kind, slides);
-      if (matters && IsCertain(one)) measured.push_back(one);
+      sought.push_back(fault);
     }
   }
+  std::vector<RecordingFault> measured = MeasureFaults(sought, result, recording, options);
+  std::erase_if(measured, [&](const RecordingFault& one) {
+    const bool slides =
+        JointOfCoordinate(result.model.tree, one.coordinate).type == JointType::kPrismatic;
+    return !(std::abs(one.size) > LeastSize(one.kind, slides)) ||
+           !(std::abs(one.size) < LargestSize(one.kind, slides)) || !IsCertain(one);
+  });
   std::stable_sort(
       measured.begin(), measured.end(),
       [](const RecordingFault& a, const RecordingFault& b) { return a.share > b.share; });
   return measured;
 }
 
-/// Root mean square distance of the markers of held-out trials after waist and markers are fitted
-/// to them, m; nothing where there are too few equations.
+}  // namespace
+
 std::optional<double> ErrorOnHeldOut(const CalibrationResult& result, const BaseParameters& base,
                                      const Recording& held_out, const CalibrationOptions& options) {
   Recording few = WithThinnedMotions(held_out, kMostOfMotions);
@@ -155,8 +159,6 @@ std::optional<double> ErrorOnHeldOut(const CalibrationResult& result, const Base
   }
 }
 
-}  // namespace
-
 std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
                                               const BaseParameters& base,
                                               const Recording& recording,
@@ -167,7 +169,7 @@ std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
   const Eigen::VectorXd given = SquaresByPosture(result, recording, options);
   std::vector<TrialOffset> offsets;
   if (in == OffsetTrials::kAny) {
-    if (recording.trials.size() <= kMostOfAny) offsets = OfEachTrial(recording);
+    offsets = OfEachTrial(recording);
   } else {
     for (const int k : result.model.active_joints) {
       const Joint& joint = tree.joints[Size(k)];

@@ -24,12 +24,17 @@ enum class OffsetTrials { kFarOff, kAny };
 /// trials, which do not have it, are not predicted worse: an offset that explains only the
 /// estimate's trials is due to something else that the model lacks. `held_out` may be empty. kAny
 /// is for trials that contradict each other, where a fit has distributed the offset over all of
-/// them: the offsets of all joints in each trial are estimated, for at most 12 trials.
+/// them: the offsets of all joints in every trial are estimated.
 std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
                                               const BaseParameters& base,
                                               const Recording& recording,
                                               const CalibrationOptions& options,
                                               const Recording& held_out = {},
                                               OffsetTrials in = OffsetTrials::kFarOff);
+
+/// rms distance of the markers of held-out trials, waist and markers being fitted to them, m; none
+/// where there are too few for that. Moments of motions are thinned.
+std::optional<double> ErrorOnHeldOut(const CalibrationResult& result, const BaseParameters& base,
+                                     const Recording& held_out, const CalibrationOptions& options);
 
 }  // namespace elastocal

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -17,10 +18,10 @@
 namespace elastocal {
 namespace {
 
-constexpr double kLeftApart = 0.5;     // ratio to the error of one robot
-constexpr double kLeastGain = 0.2e-3;  // m, less than that error
-constexpr double kMostOfSet = 3.0;     // ratio to the error of separate robots
-constexpr std::size_t kMostTrials = 12;
+constexpr double kLeftApart = 0.5;       // ratio to the error of one robot
+constexpr double kLeastGain = 0.2e-3;    // m, less than that error
+constexpr double kMostOfSet = 3.0;       // ratio to the error of separate robots
+constexpr std::size_t kMostTrials = 50;  // each is fitted by itself
 
 double CountSeen(const Recording& recording, const std::vector<int>& postures) {
   double seen = 0.0;
@@ -99,16 +100,8 @@ class TrialsTogether {
     while (!open.empty()) {
       OneRobot set{{trials_[open.front()]}, errors_[open.front()]};
       std::vector<std::size_t> others;
-      for (std::size_t k = 1; k < open.size(); ++k) {
-        std::vector<PartOfRecording> with = set.trials;
-        with.push_back(trials_[open[k]]);
-        const double error = ErrorOf(with);
-        if (error < most) {
-          set = {with, error};
-        } else {
-          others.push_back(open[k]);
-        }
-      }
+      open.erase(open.begin());
+      if (!open.empty()) Extend(open, most, set, others);
       sets.push_back(std::move(set));
       open = others;
     }
@@ -119,6 +112,23 @@ class TrialsTogether {
   }
 
  private:
+  /// Adds the trials that the robot of the set explains as well: all at once or, where it does not,
+  /// halves of them, so that few foreign trials among many take few fits.
+  void Extend(std::span<const std::size_t> by, double most, OneRobot& set,
+              std::vector<std::size_t>& others) const {
+    std::vector<PartOfRecording> with = set.trials;
+    for (const std::size_t k : by) with.push_back(trials_[k]);
+    const double error = ErrorOf(with);
+    if (error < most) {
+      set = {std::move(with), error};
+    } else if (by.size() == 1) {
+      others.push_back(by.front());
+    } else {
+      Extend(by.first(by.size() / 2), most, set, others);
+      Extend(by.subspan(by.size() / 2), most, set, others);
+    }
+  }
+
   static std::vector<int> PosturesOf(const std::vector<PartOfRecording>& trials) {
     std::vector<int> postures;
     for (const PartOfRecording& trial : trials) {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstdio>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/project/project_sections.hpp"
 
 namespace elastocal {
 namespace {
 
 constexpr std::size_t kSmallestCluster = 3;
+constexpr double kSmallestExtent = 1e-3;  // m: no markers are that small; one metre, read as mm
 
 void AddMarker(const YamlValue& where, const std::string& name, int link,
                const Eigen::Vector3d& position, Project& project) {
@@ -16,6 +19,25 @@ void AddMarker(const YamlValue& where, const std::string& name, int link,
   constexpr std::size_t kMostMarkers = 1000;
   if (project.markers.size() >= kMostMarkers) where.Fail("more than 1000 markers");
   project.markers.push_back({name, link, position});
+}
+
+/// Positions in metres, read as millimetres, are within a marker's own size of each other.
+void CheckUnit(const YamlValue& list, const MarkerCluster& cluster, const Project& project) {
+  double extent = 0.0;
+  for (const int one : cluster.markers) {
+    for (const int other : cluster.markers) {
+      extent = std::max(extent, (project.markers[Size(one)].p_link_marker -
+                                 project.markers[Size(other)].p_link_marker)
+                                    .norm());
+    }
+  }
+  if (extent >= kSmallestExtent) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the markers are within %.3g mm of each other, which is less than the size of a "
+                "marker; are these metres? Positions in mm were expected",
+                1e3 * extent);
+  list.Fail(text);
 }
 
 void ReadCluster(const YamlValue& value, Project& project) {
@@ -32,6 +54,7 @@ void ReadCluster(const YamlValue& value, Project& project) {
     AddMarker(positions[i], cluster.name + "_" + std::to_string(i + 1), cluster.link,
               PointFromMm(positions[i]), project);
   }
+  CheckUnit(list, cluster, project);
   project.clusters.push_back(std::move(cluster));
 }
 

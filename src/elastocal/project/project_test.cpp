@@ -342,6 +342,9 @@ TEST(Project, ChecksMarkers) {
                     {"position_mm[2]: found 'x'"});
   ExpectMarkerError("{clusters: [{name: C, link: tool, positions_mm: [[1, 2, 3]]}]}",
                     {"positions_mm", "at least three"});
+  ExpectMarkerError(
+      "{clusters: [{name: C, link: tool, positions_mm: [[0.1, 0, 0], [0, 0.2, 0], [0, 0, 0]]}]}",
+      {"positions_mm", "0.224 mm", "metres"});
   const std::string cluster =
       "{name: C, link: tool, positions_mm: [[1, 2, 3], [4, 5, 6], [7, 8, 0]]}";
   ExpectMarkerError("{clusters: [" + cluster + ",\n  " + cluster + "]}",

@@ -9,8 +9,10 @@
 #include "elastocal/calibration/fit.hpp"
 #include "elastocal/calibration/variances.hpp"
 #include "elastocal/measurement/moments.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/robot/linkage.hpp"
 #include "elastocal/robot/move_motors.hpp"
+#include "elastocal/screening/measured_faults.hpp"
 
 namespace elastocal {
 namespace {
@@ -27,9 +29,9 @@ using Blocks = std::vector<Eigen::VectorXd>;
 
 class FaultSearch {
  public:
-  /// `only` is the fault to be measured; null: all are tried.
+  /// `only` are the faults to be measured; none: all are tried.
   FaultSearch(const CalibrationResult& result, const Recording& recording,
-              const CalibrationOptions& options, const RecordingFault* only = nullptr)
+              const CalibrationOptions& options, const std::vector<RecordingFault>* only = nullptr)
       : result_(result),
         recording_(recording),
         options_(options),
@@ -70,7 +72,8 @@ class FaultSearch {
         TryMotor(equations, covariance, {static_cast<int>(k), static_cast<int>(rod)});
       }
     }
-    TryUnfinished(equations, covariance);
+    const RecordingFault unfinished{.kind = FaultKind::kUnfinished};  // all joints, at rest later
+    Try(equations, covariance, DerivativeOf(unfinished), {MakeTrial(unfinished)}, false);
     TryScale(equations, covariance);
     std::ranges::stable_sort(found_, std::greater(), &RecordingFault::share);
   }
@@ -103,8 +106,7 @@ class FaultSearch {
     FitResiduals residuals(Problem(changed), selection_, result_.posterior.parameters, fit_);
     residuals.body.Evaluate(residuals.body.Start(), false);
     Blocks derivative = Residuals(residuals.body);
-    for (std::size_t b = 0; b < derivative.size(); ++b)
-      derivative[b] = (derivative[b] - at_[b]) / kStep;
+    for (std::size_t b = 0; b < at_.size(); ++b) derivative[b] = (derivative[b] - at_[b]) / kStep;
     return derivative;
   }
 
@@ -183,45 +185,36 @@ class FaultSearch {
     }
   }
 
-  Blocks ByPositions(int coordinate) const {
+  /// By what a fault does to the recording, but for its factors.
+  Blocks DerivativeOf(const RecordingFault& fault) const {
     Recording changed = recording_;
-    changed.q.col(coordinate).array() += kStep;
+    if (fault.coordinate >= 0) {
+      changed.q.col(fault.coordinate).array() += kStep;
+    } else if (fault.kind == FaultKind::kUnfinished) {
+      changed.q += kStep * MovesOf(recording_);
+    } else {
+      changed.markers += kStep * CameraDisplacements(fault, recording_);
+    }
     return Derivative(changed);
   }
 
-  Blocks ByCameras(const RecordingFault& fault) const {
-    Recording changed = recording_;
-    changed.markers += kStep * CameraDisplacements(fault, recording_);
-    return Derivative(changed);
-  }
-
-  Blocks ByMoves() const {
-    Recording changed = recording_;
-    changed.q += kStep * MovesOf(recording_);
-    return Derivative(changed);
-  }
-
-  /// Tries unfinished moves of all joints: the robot came to rest after it was measured.
-  void TryUnfinished(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
-    Try(equations, covariance, ByMoves(), {MakeTrial({.kind = FaultKind::kUnfinished})}, false);
-  }
-
+  /// One derivative serves faults of the same joint that follow each other.
   void Measure(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
-               const RecordingFault& fault) {
-    const Blocks derivative = fault.coordinate >= 0                  ? ByPositions(fault.coordinate)
-                              : fault.kind == FaultKind::kUnfinished ? ByMoves()
-                                                                     : ByCameras(fault);
-    found_ = Measured(equations, covariance, derivative, {MakeTrial(fault)});
+               const std::vector<RecordingFault>& faults) {
+    Blocks derivative;
+    for (const RecordingFault& fault : faults) {
+      const int of = found_.empty() ? -1 : found_.back().coordinate;
+      if (fault.coordinate < 0 || fault.coordinate != of) derivative = DerivativeOf(fault);
+      found_.push_back(Measured(equations, covariance, derivative, {MakeTrial(fault)}).front());
+    }
   }
 
   void TryJoint(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
                 int coordinate) {
-    const Blocks derivative = ByPositions(coordinate);
-    const std::vector<Joint>& joints = result_.model.tree.joints;
-    const int joint = result_.model.tree.coordinate_joint[coordinate];
-    const bool slides = joints[joint].type == JointType::kPrismatic;
-    RecordingFault fault;
-    fault.coordinate = coordinate;
+    const Joint& joint = JointOfCoordinate(result_.model.tree, coordinate);
+    const bool slides = joint.type == JointType::kPrismatic;
+    const RecordingFault fault{.coordinate = coordinate};
+    const Blocks derivative = DerivativeOf(fault);
     RecordingFault unfinished = fault;
     unfinished.kind = FaultKind::kUnfinished;
     std::vector<Trial> of_moves = {MakeTrial(fault), MakeTrial(unfinished)};
@@ -362,14 +355,14 @@ class FaultSearch {
           {.kind = FaultKind::kCameraShear, .axis = axis, .by_axis = (axis + 1) % 3});
     }
     for (const RecordingFault& fault : of_cameras) {
-      Try(equations, covariance, ByCameras(fault), {MakeTrial(fault)}, false);
+      Try(equations, covariance, DerivativeOf(fault), {MakeTrial(fault)}, false);
     }
     if (recording_.trials.size() < 2) return;
     std::vector<Trial> trials;
     for (int trial = 0; trial < static_cast<int>(recording_.trials.size()); ++trial) {
       trials.push_back(MakeTrial({.kind = FaultKind::kCameraScale, .trial = trial}));
     }
-    Try(equations, covariance, ByCameras({.kind = FaultKind::kCameraScale}), trials, false);
+    Try(equations, covariance, DerivativeOf({.kind = FaultKind::kCameraScale}), trials, false);
   }
 
   const CalibrationResult& result_;
@@ -393,7 +386,14 @@ std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
 
 RecordingFault MeasureFault(const RecordingFault& fault, const CalibrationResult& result,
                             const Recording& recording, const CalibrationOptions& options) {
-  return FaultSearch(result, recording, options, &fault).found().front();
+  return MeasureFaults({fault}, result, recording, options).front();
+}
+
+std::vector<RecordingFault> MeasureFaults(const std::vector<RecordingFault>& faults,
+                                          const CalibrationResult& result,
+                                          const Recording& recording,
+                                          const CalibrationOptions& options) {
+  return FaultSearch(result, recording, options, &faults).found();
 }
 
 }  // namespace elastocal
