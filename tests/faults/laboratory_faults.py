@@ -11,7 +11,7 @@ verdict, refusal or warnings has all its key words: the joint (trial, cluster) a
 fault that ends with exit 0 is judged by `validate` on the trials of FOLDER (default: the clean
 recording's own trials for validation), against the calibration of the clean recording: its error
 should not be above 1.3 times the clean one. PyYAML is needed. With --demand the exit code is 1 where one
-is, or where less than 80 % of the faults are named.
+is, where the program has a defect (exit codes other than 0, 3 and 4), or where less than 80 % of the faults are named.
 """
 
 import argparse
@@ -25,6 +25,11 @@ import sys
 import tempfile
 
 sys.dont_write_bytecode = True  # no files in the sources
+try:
+    import yaml  # noqa: F401, pylint: disable=unused-import
+except ImportError:
+    print("PyYAML is not installed", file=sys.stderr)
+    sys.exit(77)
 from laboratory_cases import (  # noqa: E402, pylint: disable=wrong-import-position
     Laboratory, Recording, all_faults)
 
@@ -107,6 +112,8 @@ def main():
         if done.returncode:
             sys.exit(f"the clean recording is refused: {done.stdout}{done.stderr}")
         clean = true_error(a.program, a.project, scratch / "clean_out", judge, scratch)
+        if not cases:
+            sys.exit("no fault of these kinds")
         lines = ["| fault | exit | named | error / clean | said |", "|---|---|---|---|---|"]
         named_count = bad = 0
         for kind, name, words, put in cases:
@@ -123,7 +130,10 @@ def main():
             if done.returncode == 0:
                 error = true_error(a.program, a.project, out, judge, scratch) / clean
                 ratio = f"{error:.2f}"
-                bad += error > LIMIT
+                bad += not error <= LIMIT
+            elif done.returncode not in (3, 4):
+                ratio = "defect"
+                bad += 1
             named_count += bool(hits)
             said = hits[0] if hits else next((l for l in told if l.startswith("Verdict")), told[-2:][0])
             said = re.sub(r"^(elastocal: \w+: |Verdict: (do not )?deploy\. )", "", said.strip())
@@ -133,7 +143,7 @@ def main():
             print(lines[-1], flush=True)
             if a.verbose:
                 print("\n".join(told))
-        lines.append(f"| **{len(cases)} faults** | | **{named_count}** | **{bad} above {LIMIT}** | |")
+        lines.append(f"| **{len(cases)} faults** | | **{named_count}** | **{bad} above {LIMIT}, or a defect** | |")
         print(lines[-1])
     if a.table:
         put_table(a.table, lines)

@@ -18,6 +18,7 @@
 #include "elastocal/cli/session.hpp"
 #include "elastocal/cli/simulation_report.hpp"
 #include "elastocal/files/output_set.hpp"
+#include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
 
@@ -110,18 +111,23 @@ class Simulations {
   std::vector<Run> runs_;  ///< last, because their threads must end before the other members do
 };
 
-/// Throws InputError at once where `--json` cannot be written: `calibrate` would see it only after
-/// the motions are simulated.
-void RequireJsonPlace(const std::string& json_file) {
+/// Throws InputError at once where `--json` cannot be written or is a file that the demo writes:
+/// `calibrate` would see it only after the motions are simulated.
+void RequireJsonPlace(const std::string& project, const DemoOptions& options) {
+  const std::filesystem::path folder = options.output;
   OutputSet outputs;
-  DeclareJson(json_file, outputs);
+  DeclareResults(folder, CalibrationFileNames(ReadProject(project)), outputs);
+  for (const char* name : {"postures.yaml", "motion.csv", "sine.csv", "random.csv"}) {
+    outputs.Declare(folder / name);
+  }
+  DeclareJson(options.common.json_file, outputs);
   outputs.Prepare();
 }
 
 /// Runs the commands from a robot description to a calibrated one. Each simulation begins when its
 /// motion is planned, and runs beside the next steps.
 int RunCompleteChain(const std::string& project, const DemoOptions& options) {
-  RequireJsonPlace(options.common.json_file);
+  if (!options.common.json_file.empty()) RequireJsonPlace(project, options);
   const auto in = [&](const std::string& name) {
     return (std::filesystem::path(options.output) / name).string();
   };

@@ -26,6 +26,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kContradicted = 10.0;
+constexpr char kContradict[] = "trials for calibration and for validation contradict each other: ";
 constexpr double kLeftByMistake = 0.3;  // share of the error on held-out trials
 // Updates of the noise for trials that seem to contradict each other.
 constexpr int kUpdatesTogether = 15;
@@ -244,6 +245,40 @@ Contrast ContrastOf(const Project& project, const Recording& recording,
                          comparison.largest_kind());
 }
 
+/// Trials of the estimate and held-out ones, and one fit of all of them.
+struct AllTrials {
+  Recording held_out;  ///< fewer moments of its motions
+  Recording recording;
+  CalibrationOptions options;
+  CalibrationResult fit;
+};
+
+AllTrials FitTogether(const Project& project, const RecordedModel& robot,
+                      const Recording& recording, const Recording& held_out, ModelKind kind) {
+  AllTrials all;
+  all.held_out = WithThinnedMotions(held_out, recording.posture_count());
+  all.recording = JoinTrials(recording, all.held_out);
+  // Noise and outliers of contradictory trials hardly come to rest.
+  all.options = project.calibration;
+  all.options.outliers = OutlierPolicy::kKeep;
+  all.options.max_iterations = std::min(all.options.max_iterations, kUpdatesTogether);
+  all.fit = Calibrate(robot.model, all.recording, robot.base, kind, all.options);
+  // Times within each trial are kept, because joints' speeds follow from them.
+  Eigen::VectorXd& time_s = all.recording.time_s;
+  time_s.resize(recording.time_s.size() + all.held_out.time_s.size());
+  time_s << recording.time_s, all.held_out.time_s;
+  if (time_s.size() != all.recording.posture_count()) time_s.resize(0);
+  return all;
+}
+
+/// Faults of a robot in all trials, the one that explains most first.
+std::vector<RecordingFault> FaultsOfAll(const AllTrials& all, const CalibrationOptions& options) {
+  std::vector<RecordingFault> faults = FindRecordingFaults(all.fit, all.recording, options);
+  std::erase_if(faults,
+                [&](const RecordingFault& one) { return MayBeInertia(one, all.recording); });
+  return faults;
+}
+
 }  // namespace
 
 std::string LeaveOutBriefExchange(const Project& project, const Recording& recording,
@@ -295,46 +330,37 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
     return {exchange->Description(recording, held_out) +
             ". Correct the labels and calibrate again"};
   }
-  const Recording thinned = WithThinnedMotions(held_out, recording.posture_count());
-  Recording all = JoinTrials(recording, thinned);
-  // Noise and outliers of contradictory trials hardly come to rest.
-  CalibrationOptions roughly = project.calibration;
-  roughly.outliers = OutlierPolicy::kKeep;
-  roughly.max_iterations = std::min(roughly.max_iterations, kUpdatesTogether);
-  const CalibrationResult together =
-      Calibrate(robot.model, all, robot.base, comparison.largest().kind, roughly);
-  // Times within each trial are kept, because joints' speeds follow from them.
-  all.time_s.resize(recording.time_s.size() + thinned.time_s.size());
-  all.time_s << recording.time_s, thinned.time_s;
-  if (all.time_s.size() != all.posture_count()) all.time_s.resize(0);
-  std::vector<RecordingFault> faults = FindRecordingFaults(together, all, project.calibration);
-  std::erase_if(faults, [&](const RecordingFault& one) { return MayBeInertia(one, all); });
+  const AllTrials all = FitTogether(project, robot, recording, held_out, comparison.largest_kind());
+  const std::vector<RecordingFault> faults = FaultsOfAll(all, project.calibration);
   if (!faults.empty()) {
     const GeneralFault general{
-        faults.front(), robot.model, robot.base, all, comparison.largest_kind(), roughly};
+        faults.front(), robot.model, robot.base, all.recording, comparison.largest_kind(),
+        all.options};
     const FaultsInWords words = ExplainFault(general, project);
     if (!words.complete) {
-      const std::string another = AnotherRobot(robot, recording, thinned, comparison.largest(),
-                                               MarkerError(together, all, roughly), roughly);
+      const std::string another =
+          AnotherRobot(robot, recording, all.held_out, comparison.largest(),
+                       MarkerError(all.fit, all.recording, all.options), all.options);
       if (!another.empty()) return {another};
     }
-    return {"trials for calibration and for validation contradict each other: " + words.text +
-            OrInThoseOfTheEstimate(faults.front(), all, recording)};
+    return {kContradict + words.text +
+            OrInThoseOfTheEstimate(faults.front(), all.recording, recording)};
   }
   if (!(std::max(contrast.ratio(), contrast.largest_of_clusters) > kContradicted)) return {};
-  const std::vector<Knock> knocks = KnocksOfAll(project, robot, all);
+  const std::vector<Knock> knocks = KnocksOfAll(project, robot, all.recording);
   if (knocks.size() >= kManyKnocks) {
-    const std::string another = AnotherRobot(robot, recording, thinned, comparison.largest(),
-                                             MarkerError(together, all, roughly), roughly);
+    const std::string another =
+        AnotherRobot(robot, recording, all.held_out, comparison.largest(),
+                     MarkerError(all.fit, all.recording, all.options), all.options);
     if (!another.empty()) return {another};
   }
-  if (!knocks.empty()) return {DescribeKnockOfAll(knocks.front(), all)};
+  if (!knocks.empty()) return {DescribeKnockOfAll(knocks.front(), all.recording)};
   const std::string moved =
-      FindMovedBetween(project, together, all, roughly,
+      FindMovedBetween(project, all.fit, all.recording, all.options,
                        MovedSuspects(SeenClusters(project, recording), fitted, held_out_table,
-                                     comparison.largest_kind(), all));
+                                     comparison.largest_kind(), all.recording));
   if (!moved.empty()) {
-    return {"trials for calibration and for validation contradict each other: " + moved};
+    return {kContradict + moved};
   }
   if (!(contrast.ratio() > kContradicted)) return {};
   char text[200];
@@ -343,6 +369,21 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
                 "something differs between the recordings",
                 1e3 * contrast.held_out, 1e3 * contrast.fitted);
   return {"held-out trials of " + contrast.group + " contradict those of the estimate: " + text};
+}
+
+std::string FindScaleOfTrials(const Project& project, const RecordedModel& robot,
+                              const Recording& recording, const Recording& held_out,
+                              ModelKind kind) {
+  if (recording.trials.empty() || held_out.posture_count() == 0 ||
+      held_out.marker_names != recording.marker_names) {
+    return "";
+  }
+  const AllTrials all = FitTogether(project, robot, recording, held_out, kind);
+  const std::vector<RecordingFault> faults = FaultsOfAll(all, project.calibration);
+  if (faults.empty() || faults.front().kind != FaultKind::kCameraScale) return "";
+  const GeneralFault general{faults.front(), robot.model, robot.base,
+                             all.recording,  kind,        all.options};
+  return kContradict + ExplainFault(general, project).text;
 }
 
 }  // namespace elastocal

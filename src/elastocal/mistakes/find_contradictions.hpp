@@ -31,4 +31,11 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
                                             const ModelComparison& comparison,
                                             const ErrorTable& held_out_table);
 
+/// Describes a scale of the cameras that is wrong in some trials and right in others, of the
+/// estimate (`recording`) and held-out ones together; empty without. The trials of the estimate
+/// alone make the lengths of the robot wrong by that factor, and do not tell that others disagree.
+std::string FindScaleOfTrials(const Project& project, const RecordedModel& robot,
+                              const Recording& recording, const Recording& held_out,
+                              ModelKind kind);
+
 }  // namespace elastocal

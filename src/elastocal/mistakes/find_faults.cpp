@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/find_contradictions.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/impossible_gears.hpp"
 #include "elastocal/mistakes/missed_springs.hpp"
@@ -200,7 +201,7 @@ class FaultsInTurn {
   std::vector<std::string> OfWhatIsLeft() {
     std::vector<std::string> faults = OfUpByLoads();
     if (!faults.empty()) return faults;
-    if (!of_slides_.empty() && !scale_is_known_) return {of_slides_};
+    if (!of_slides_.empty() && !scale_is_known_) return {OfScale(of_slides_)};
     faults = OfCoarsePositions();
     if (!faults.empty()) return faults;
     Look();
@@ -248,11 +249,17 @@ class FaultsInTurn {
       const auto found = General();
       const bool of_cameras =
           found && (found->fault.kind == FaultKind::kCameraScale || IsInCameraSpace(found->fault));
-      faults.push_back(of_cameras           ? ExplainFault(*found, project_).text
-                       : of_slides_.empty() ? Describe(*scale)
-                                            : of_slides_);
+      faults.push_back(of_cameras ? ExplainFault(*found, project_).text
+                                  : OfScale(of_slides_.empty() ? Describe(*scale) : of_slides_));
     }
     return faults;
+  }
+
+  /// A wrong scale of the cameras as `said`, or that of some trials which others contradict.
+  std::string OfScale(const std::string& said) const {
+    const std::string of_trials =
+        FindScaleOfTrials(project_, robot_, recording_, as_recorded_.validation, fit().kind);
+    return of_trials.empty() ? said : of_trials;
   }
 
   /// Finds faults of joints and others that displace several clusters; the search is made once.
@@ -325,7 +332,7 @@ class FaultsInTurn {
   std::vector<std::string> OfGeneralFault() const {
     const std::string of_slide =
         scale_is_known_ ? "" : ScaleOfSlides({found_->fault}, fit(), project_.calibration);
-    if (!of_slide.empty()) return {of_slide};
+    if (!of_slide.empty()) return {OfScale(of_slide)};
     if (!few_->complete) {
       const auto odd = OddBesideCalibrated(project_, robot_, recording_, fit(), left_);
       if (!odd.empty()) return odd;

@@ -143,7 +143,8 @@ class McapReader {
               std::uint64_t offset) {
     const auto unpack = compression == "lz4" ? UnpackLz4 : UnpackZstd;
     if (unpack(packed, size, chunk_)) return;
-    source_.Fail(offset, "the chunk is damaged: its " + compression + " data end early");
+    source_.Fail(offset, "the chunk is damaged: its " + compression +
+                             " data end early, or are of more bytes than it says");
   }
 
   const ByteSource& source_;

@@ -139,8 +139,10 @@ class Rosbag1Reader {
     if (compression == "lz4" || compression == "bz2") {
       const auto unpack = compression == "lz4" ? UnpackLz4 : UnpackBz2;
       const bool fine = unpack(packed, static_cast<std::size_t>(size), chunk_);
-      if (!fine)
-        source_.Fail(offset, "the chunk is damaged: its " + compression + " data end early");
+      if (!fine) {
+        source_.Fail(offset, "the chunk is damaged: its " + compression +
+                                 " data end early, or are of more bytes than it says");
+      }
       records = chunk_;
     } else if (compression != "none") {
       source_.Fail(offset, "the compression " + Quote(compression) +
