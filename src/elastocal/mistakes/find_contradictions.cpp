@@ -225,6 +225,25 @@ std::string AnotherRobot(const RecordedModel& robot, const Recording& recording,
       1e3 * left, 1e3 * errors[0], 1e3 * errors[1]);
 }
 
+/// All trials, with the times of their postures where both have them: within each trial they tell
+/// how fast joints moved.
+Recording JoinedWithTimes(const Recording& recording, const Recording& held_out) {
+  Recording all = JoinTrials(recording, held_out);
+  all.time_s.resize(recording.time_s.size() + held_out.time_s.size());
+  all.time_s << recording.time_s, held_out.time_s;
+  if (all.time_s.size() != all.posture_count()) all.time_s.resize(0);
+  return all;
+}
+
+std::string DescribeContrast(const Contrast& contrast) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the model errs by %.3g mm on them, and by %.3g mm on those of the estimate; "
+                "something differs between the recordings",
+                1e3 * contrast.held_out, 1e3 * contrast.fitted);
+  return "held-out trials of " + contrast.group + " contradict those of the estimate: " + text;
+}
+
 ErrorTable FittedTable(const Project& project, const Recording& recording,
                        const ModelComparison& comparison) {
   return JudgeOnTrials(comparison, AsUsed(recording, comparison.largest()), project.calibration)
@@ -291,38 +310,32 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
             ". Correct the labels and calibrate again"};
   }
   const Recording thinned = WithThinnedMotions(held_out, recording.posture_count());
-  Recording all = JoinTrials(recording, thinned);
+  const Recording all = JoinedWithTimes(recording, thinned);
   // Trials that contradict each other keep noise and outliers from coming to rest.
   CalibrationOptions roughly = project.calibration;
   roughly.outliers = OutlierPolicy::kKeep;
   roughly.max_iterations = std::min(roughly.max_iterations, kUpdatesTogether);
-  const CalibrationResult together =
-      Calibrate(robot.model, all, robot.base, comparison.largest().kind, roughly);
-  // Within each trial they tell how fast joints moved.
-  all.time_s.resize(recording.time_s.size() + thinned.time_s.size());
-  all.time_s << recording.time_s, thinned.time_s;
-  if (all.time_s.size() != all.posture_count()) all.time_s.resize(0);
+  const CalibrationResult together = Calibrate(robot.model, JoinTrials(recording, thinned),
+                                               robot.base, comparison.largest().kind, roughly);
+  const auto another = [&] {
+    return AnotherRobot(robot, recording, thinned, comparison.largest(),
+                        MarkerError(together, all, roughly), roughly);
+  };
   std::vector<RecordingFault> faults = FindRecordingFaults(together, all, project.calibration);
   std::erase_if(faults, [&](const RecordingFault& one) { return MayBeInertia(one, all); });
   if (!faults.empty()) {
     const GeneralFault general{
         faults.front(), robot.model, robot.base, all, comparison.largest_kind(), roughly};
     const FaultsInWords words = ExplainFault(general, project);
-    if (!words.complete) {
-      const std::string another = AnotherRobot(robot, recording, thinned, comparison.largest(),
-                                               MarkerError(together, all, roughly), roughly);
-      if (!another.empty()) return {another};
-    }
+    const std::string other = words.complete ? "" : another();
+    if (!other.empty()) return {other};
     return {"trials for calibration and for validation contradict each other: " + words.text +
             OrInThoseOfTheEstimate(faults.front(), all, recording)};
   }
   if (!(std::max(contrast.ratio(), contrast.largest_of_clusters) > kContradicted)) return {};
   const std::vector<Knock> knocks = KnocksOfAll(project, robot, all);
-  if (knocks.size() >= kManyKnocks) {
-    const std::string another = AnotherRobot(robot, recording, thinned, comparison.largest(),
-                                             MarkerError(together, all, roughly), roughly);
-    if (!another.empty()) return {another};
-  }
+  const std::string other = knocks.size() < kManyKnocks ? "" : another();
+  if (!other.empty()) return {other};
   if (!knocks.empty()) return {DescribeKnockOfAll(knocks.front(), all)};
   const std::string moved =
       FindMovedBetween(project, together, all, roughly,
@@ -332,12 +345,7 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
     return {"trials for calibration and for validation contradict each other: " + moved};
   }
   if (!(contrast.ratio() > kContradicted)) return {};
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "the model errs by %.3g mm on them, and by %.3g mm on those of the estimate; "
-                "something differs between the recordings",
-                1e3 * contrast.held_out, 1e3 * contrast.fitted);
-  return {"held-out trials of " + contrast.group + " contradict those of the estimate: " + text};
+  return {DescribeContrast(contrast)};
 }
 
 }  // namespace elastocal
