@@ -231,6 +231,25 @@ std::string AnotherRobot(const RecordedModel& robot, const Recording& recording,
       1e3 * left, 1e3 * errors[0], 1e3 * errors[1]);
 }
 
+/// All trials, with the times of their postures where both have them: within each trial they tell
+/// how fast joints moved.
+Recording JoinedWithTimes(const Recording& recording, const Recording& held_out) {
+  Recording all = JoinTrials(recording, held_out);
+  all.time_s.resize(recording.time_s.size() + held_out.time_s.size());
+  all.time_s << recording.time_s, held_out.time_s;
+  if (all.time_s.size() != all.posture_count()) all.time_s.resize(0);
+  return all;
+}
+
+std::string DescribeContrast(const Contrast& contrast) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "the model errs by %.3g mm on them, and by %.3g mm on those of the estimate; "
+                "something differs between the recordings",
+                1e3 * contrast.held_out, 1e3 * contrast.fitted);
+  return "held-out trials of " + contrast.group + " contradict those of the estimate: " + text;
+}
+
 ErrorTable FittedTable(const Project& project, const Recording& recording,
                        const ModelComparison& comparison) {
   return JudgeOnTrials(comparison, AsUsed(recording, comparison.largest()), project.calibration)
@@ -257,17 +276,13 @@ AllTrials FitTogether(const Project& project, const RecordedModel& robot,
                       const Recording& recording, const Recording& held_out, ModelKind kind) {
   AllTrials all;
   all.held_out = WithThinnedMotions(held_out, recording.posture_count());
-  all.recording = JoinTrials(recording, all.held_out);
   // Noise and outliers of contradictory trials hardly come to rest.
   all.options = project.calibration;
   all.options.outliers = OutlierPolicy::kKeep;
   all.options.max_iterations = std::min(all.options.max_iterations, kUpdatesTogether);
-  all.fit = Calibrate(robot.model, all.recording, robot.base, kind, all.options);
-  // Times within each trial are kept, because joints' speeds follow from them.
-  Eigen::VectorXd& time_s = all.recording.time_s;
-  time_s.resize(recording.time_s.size() + all.held_out.time_s.size());
-  time_s << recording.time_s, all.held_out.time_s;
-  if (time_s.size() != all.recording.posture_count()) time_s.resize(0);
+  all.fit =
+      Calibrate(robot.model, JoinTrials(recording, all.held_out), robot.base, kind, all.options);
+  all.recording = JoinedWithTimes(recording, all.held_out);
   return all;
 }
 
@@ -332,43 +347,32 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   }
   const AllTrials all = FitTogether(project, robot, recording, held_out, comparison.largest_kind());
   const std::vector<RecordingFault> faults = FaultsOfAll(all, project.calibration);
+  const auto another = [&] {
+    return AnotherRobot(robot, recording, all.held_out, comparison.largest(),
+                        MarkerError(all.fit, all.recording, all.options), all.options);
+  };
   if (!faults.empty()) {
     const GeneralFault general{
         faults.front(), robot.model, robot.base, all.recording, comparison.largest_kind(),
         all.options};
     const FaultsInWords words = ExplainFault(general, project);
-    if (!words.complete) {
-      const std::string another =
-          AnotherRobot(robot, recording, all.held_out, comparison.largest(),
-                       MarkerError(all.fit, all.recording, all.options), all.options);
-      if (!another.empty()) return {another};
-    }
+    const std::string other = words.complete ? "" : another();
+    if (!other.empty()) return {other};
     return {kContradict + words.text +
             OrInThoseOfTheEstimate(faults.front(), all.recording, recording)};
   }
   if (!(std::max(contrast.ratio(), contrast.largest_of_clusters) > kContradicted)) return {};
   const std::vector<Knock> knocks = KnocksOfAll(project, robot, all.recording);
-  if (knocks.size() >= kManyKnocks) {
-    const std::string another =
-        AnotherRobot(robot, recording, all.held_out, comparison.largest(),
-                     MarkerError(all.fit, all.recording, all.options), all.options);
-    if (!another.empty()) return {another};
-  }
+  const std::string other = knocks.size() < kManyKnocks ? "" : another();
+  if (!other.empty()) return {other};
   if (!knocks.empty()) return {DescribeKnockOfAll(knocks.front(), all.recording)};
   const std::string moved =
       FindMovedBetween(project, all.fit, all.recording, all.options,
                        MovedSuspects(SeenClusters(project, recording), fitted, held_out_table,
                                      comparison.largest_kind(), all.recording));
-  if (!moved.empty()) {
-    return {kContradict + moved};
-  }
+  if (!moved.empty()) return {kContradict + moved};
   if (!(contrast.ratio() > kContradicted)) return {};
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "the model errs by %.3g mm on them, and by %.3g mm on those of the estimate; "
-                "something differs between the recordings",
-                1e3 * contrast.held_out, 1e3 * contrast.fitted);
-  return {"held-out trials of " + contrast.group + " contradict those of the estimate: " + text};
+  return {DescribeContrast(contrast)};
 }
 
 std::string FindScaleOfTrials(const Project& project, const RecordedModel& robot,
