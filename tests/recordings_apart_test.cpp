@@ -61,13 +61,14 @@ class RecordingsApart : public testing::Test {
   }
 
   /// What calibrate says of it.
-  std::string FaultsOf(const Recording& recording) const {
+  std::string FaultsOf(const Recording& recording, const Recording& validation = {}) const {
     ModelComparison comparison;
     const CalibrationResult fit = FitOf(recording);
     comparison.kinds = {fit.kind};
     comparison.results[static_cast<std::size_t>(fit.kind)] = fit;
     Measurements measured;
     measured.calibration = recording;
+    measured.validation = validation;
     std::string all;
     for (const std::string& fault : FindFaults(
              robot_.project, {}, measured, {robot_.model, robot_.base}, recording, comparison)) {
@@ -227,13 +228,14 @@ TEST_F(RecordingsApart, AnOffsetIsInTheTrialThatContradictsHeldOutOnes) {
 // All of its clusters are elsewhere: none of them was knocked.
 TEST_F(RecordingsApart, HeldOutTrialsOfAnotherRobotAreSaidToBe) {
   const Recording own = Record(truth_, "monday", 0);
-  const auto said = [&](const Recording& held_out) {
-    ModelComparison comparison;
-    comparison.kinds = {ModelKind::kUncalibrated, ModelKinds(robot_.model).back()};
-    for (const ModelKind kind : comparison.kinds) {
-      comparison.results[static_cast<std::size_t>(kind)] =
-          Calibrate(robot_.model, own, robot_.base, kind, {});
-    }
+  ModelComparison comparison;
+  comparison.kinds = {ModelKind::kUncalibrated, ModelKinds(robot_.model).back()};
+  for (const ModelKind kind : comparison.kinds) {
+    comparison.results[static_cast<std::size_t>(kind)] =
+        Calibrate(robot_.model, own, robot_.base, kind, {});
+  }
+  const auto said = [&](const Eigen::VectorXd& truth) {
+    const Recording held_out = Record(truth, "friday", 1);
     const ErrorTable table = JudgeOnTrials(comparison, held_out, {}).table;
     std::string all;
     for (const std::string& one : FindContradictions(robot_.project, {robot_.model, robot_.base},
@@ -242,9 +244,20 @@ TEST_F(RecordingsApart, HeldOutTrialsOfAnotherRobotAreSaidToBe) {
     }
     return all;
   };
-  EXPECT_EQ(said(Record(truth_, "friday", 1)), "");
-  const std::string other = said(Record(other_, "friday", 1));
+  EXPECT_EQ(said(truth_), "");
+  const std::string other = said(other_);
   EXPECT_NE(other.find("robots of their own"), std::string::npos) << other;
+}
+
+// By the trials of the estimate alone, it is a scale of all trials, and not exactly told.
+TEST_F(RecordingsApart, AScaleOfTheEstimatesTrialsIsToldFromOneOfAll) {
+  Recording own = Record(truth_, "monday", 0);
+  own.markers *= 1.03;
+  const std::string said = FaultsOf(own, Record(truth_, "friday", 1));
+  EXPECT_NE(said.find("camera positions are 1.0300 times the true ones in trial monday/"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("--accept scale:monday/"), std::string::npos) << said;
 }
 
 TEST_F(RecordingsApart, MarkersThatWereGluedOnAnewAreNoOtherRobot) {

@@ -68,7 +68,8 @@ int SideByNames(const RobotTree& tree, const Limb& limb) {
 bool IsArmByNames(const RobotTree& tree, const Limb& limb) {
   return Says(tree, limb, {"arm", "elbow", "forearm", "wrist", "hand", "palm", "gripper"}) &&
          !Says(tree, limb,
-               {"leg", "hip", "thigh", "knee", "calf", "shank", "ankle", "foot", "sole"});
+               {"leg", "hip", "thigh", "femur", "knee", "calf", "shank", "shin", "tibia", "ankle",
+                "tarsus", "foot", "paw", "hoof", "heel", "toe", "sole"});
 }
 
 std::string NameLimb(const RobotTree& tree, const std::vector<Limb>& limbs, const Limb& limb) {

@@ -13,11 +13,12 @@
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/measurement/thinned_motions.hpp"
 #include "elastocal/measurement/trial_names.hpp"
-#include "elastocal/mistakes/estimated_place.hpp"
+#include "elastocal/mistakes/exchange_within_cluster.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/held_out_contrast.hpp"
 #include "elastocal/mistakes/moved_between.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/recordings_apart.hpp"
 #include "elastocal/mistakes/trials_apart.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 #include "elastocal/validation/held_out.hpp"
@@ -30,9 +31,8 @@ constexpr char kContradict[] = "trials for calibration and for validation contra
 constexpr double kLeftByMistake = 0.3;  // share of the error on held-out trials
 // Updates of the noise for trials that seem to contradict each other.
 constexpr int kUpdatesTogether = 15;
-constexpr std::size_t kManyKnocks = 3;  // clusters; all clusters of another robot are elsewhere
-constexpr int kAtTheSeam = 2;           // postures
-constexpr int kFilterSpreads = 2;       // postures beside exchanged ones, which the filter mixes
+constexpr int kAtTheSeam = 2;      // postures
+constexpr int kFilterSpreads = 2;  // postures beside exchanged ones, which the filter mixes
 
 /// The recording without the markers that knocks added (SplitMarkers), which the project does not
 /// have.
@@ -82,87 +82,6 @@ std::string MistakeInHeldOut(const Project& project, const Recording& held_out,
       names.empty() ? "" : " (--accept" + names + " corrects it)");
 }
 
-/// Whether each of two markers is estimated where the project has the other.
-bool AreExchanged(const CalibrationResult& result, int a, int b) {
-  const auto from = [&](int m, int other) {
-    return (EstimatedPlace(result, m) - result.model.markers[Size(other)].p_link_marker)
-        .squaredNorm();
-  };
-  return from(a, b) + from(b, a) < from(a, a) + from(b, b);
-}
-
-std::string TrialsThatSee(const Recording& recording, int a, int b) {
-  return TrialNames(recording, TrialsWith(recording, [&](int i) {
-                      return Seen(recording, i, a) && Seen(recording, i, b);
-                    }));
-}
-
-/// Two markers of one cluster whose labels are exchanged in all trials of the estimate that show
-/// them, or in held-out postures.
-struct Exchange {
-  int a = -1, b = -1;
-  /// held-out postures that are nearer to the model with the labels exchanged back
-  std::vector<int> postures;
-  double before = 0.0;  ///< rms over all held-out distances, m
-  double after = 0.0;   ///< the same with the labels exchanged back
-  /// The labels are wrong in the estimate's trials, not in the held-out postures.
-  bool of_estimate = false;
-
-  std::string Description(const Recording& recording, const Recording& held_out) const {
-    return fmt::format(
-        "the labels of {} and {} seem exchanged in {}: exchanged back, held-out trials are {:.3g} "
-        "mm off the model, as they are {:.3g} mm",
-        recording.marker_names[Size(a)], recording.marker_names[Size(b)],
-        of_estimate ? "trial " + TrialsThatSee(recording, a, b)
-                    : fmt::format("{} postures of trial {}", postures.size(),
-                                  TrialsThatSee(SelectPostures(held_out, postures), a, b)),
-        1e3 * after, 1e3 * before);
-  }
-};
-
-/// Finds such an exchange. Each side fits by itself, and where the distances to the cluster's other
-/// markers are similar, only the robot shows it.
-std::optional<Exchange> ExchangeWithinCluster(const Project& project, const Recording& recording,
-                                              const Recording& held_out,
-                                              const ModelComparison& comparison) {
-  const auto squares_of = [&](const Recording& judged) -> Eigen::ArrayXXd {
-    const HeldOut result = JudgeLargestOnTrials(comparison, judged, project.calibration);
-    const auto& distances =
-        result.predictions[static_cast<std::size_t>(comparison.largest_kind())].distances;
-    return distances.array().isFinite().select(distances.array().square(), 0.0);
-  };
-  const Eigen::ArrayXXd given = squares_of(held_out);
-  const double before = given.sum();
-  const auto count = static_cast<double>((given > 0.0).count());
-  double least = kLeftByMistake * kLeftByMistake * before;
-  std::optional<Exchange> found;
-  for (const LabelCluster& cluster : SeenClusters(project, recording)) {
-    for (std::size_t i = 0; i < cluster.markers.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        const int one = cluster.markers[j], other = cluster.markers[i];
-        const Eigen::ArrayXd of_pair = given.col(one) + given.col(other);
-        if (before - of_pair.sum() > least) continue;
-        Recording exchanged = held_out;
-        exchanged.markers.middleCols<3>(3 * one).swap(exchanged.markers.middleCols<3>(3 * other));
-        const Eigen::ArrayXXd squares = squares_of(exchanged);
-        const Eigen::ArrayXd left = squares.col(one) + squares.col(other);
-        double gained = 0.0;
-        std::vector<int> nearer;
-        for (int k = 0; k < held_out.posture_count(); ++k) {
-          if (!(left[k] < kLeftByMistake * of_pair[k])) continue;
-          gained += of_pair[k] - left[k];
-          nearer.push_back(k);
-        }
-        if (!(before - gained < least)) continue;
-        least = before - gained;
-        found = {one, other, nearer, std::sqrt(before / count), std::sqrt(least / count)};
-      }
-    }
-  }
-  if (found) found->of_estimate = AreExchanged(comparison.largest(), found->a, found->b);
-  return found;
-}
-
 /// If a joint is off in all held-out trials, adds that it may instead be off in those of the
 /// estimate; else empty.
 std::string OrInThoseOfTheEstimate(const RecordingFault& fault, const Recording& all,
@@ -201,34 +120,11 @@ std::vector<Knock> KnocksOfAll(const Project& project, const RecordedModel& robo
 
 std::string DescribeKnockOfAll(const Knock& knock, const Recording& all) {
   return fmt::format(
-      "trials for calibration and for validation contradict each other: cluster {} seems to lie "
-      "{:.1f} mm elsewhere from {} on than up to {} (trials for validation come last): was it "
-      "knocked, or glued on again? Measure again what was recorded before or after it",
-      knock.cluster, 1e3 * knock.distance, DescribePosture(all, knock.posture),
+      "{}cluster {} seems to lie {:.1f} mm elsewhere from {} on than up to {} (trials for "
+      "validation come last): was it knocked, or glued on again? Measure again what was recorded "
+      "before or after it",
+      kContradict, knock.cluster, 1e3 * knock.distance, DescribePosture(all, knock.posture),
       DescribePosture(all, knock.last_before));
-}
-
-/// What says that the held-out trials are of another robot: where they are explained by themselves,
-/// and those of the estimate by themselves, by half of the error that is left of both together (m)
-/// once faults are undone; else empty.
-std::string AnotherRobot(const RecordedModel& robot, const Recording& recording,
-                         const Recording& held_out, const CalibrationResult& estimate, double left,
-                         const CalibrationOptions& options) {
-  std::vector<PartOfRecording> parts(2);
-  for (int i = 0; i < recording.posture_count(); ++i) parts[0].postures.push_back(i);
-  for (int i = 0; i < held_out.posture_count(); ++i) {
-    parts[1].postures.push_back(recording.posture_count() + i);
-  }
-  const std::vector<double> errors = {MarkerError(estimate, recording, options),
-                                      ErrorAlone(robot, held_out, estimate.kind, options)};
-  if (!std::isfinite(errors[1])) return "";
-  const double apart = ErrorOverParts(JoinTrials(recording, held_out), parts, errors);
-  if (!AreApart(apart, left)) return "";
-  return fmt::format(
-      "trials for calibration and for validation contradict each other: one robot leaves an error "
-      "of {:.3g} mm, robots of their own {:.3g} mm and {:.3g} mm. Are they of different robots or "
-      "days, or was the robot changed in between? Measure one of them again",
-      1e3 * left, 1e3 * errors[0], 1e3 * errors[1]);
 }
 
 /// All trials, with the times of their postures where both have them: within each trial they tell
@@ -286,6 +182,69 @@ AllTrials FitTogether(const Project& project, const RecordedModel& robot,
   return all;
 }
 
+/// Factor of the scale of the cameras in the trials of the estimate to that in held-out trials: one
+/// robot leaves least in all of them with the former undone. Nothing where that leaves more than
+/// half of `left`, the error without it, m.
+std::optional<double> ScaleBetween(const Project& project, const RecordedModel& robot,
+                                   const Recording& recording, const Recording& held_out,
+                                   ModelKind kind, double left) {
+  constexpr double kLeftByScale = 0.5;
+  const auto square = [&](double factor) {
+    Recording undone = recording;
+    undone.markers /= factor;
+    const AllTrials all = FitTogether(project, robot, undone, held_out, kind);
+    return std::pow(MarkerError(all.fit, all.recording, all.options), 2);
+  };
+  double best = 1.0, least = left * left;
+  for (const double step : {1e-2, 1e-3, 1e-4}) {  // the square is nearly a parabola of the factor
+    const double below = square(best - step), above = square(best + step);
+    const double bend = below - 2.0 * least + above;
+    if (!(bend > 0.0)) return std::nullopt;
+    best += 0.5 * step * (below - above) / bend;
+    least = square(best);
+    if (!(least < std::pow(kLeftByScale * left, 2))) return std::nullopt;
+  }
+  return best;
+}
+
+std::string DescribeScaleBetween(double factor, const Recording& recording) {
+  std::string accept;
+  for (const Trial& trial : recording.trials) {
+    accept += fmt::format(" scale:{}={:.5f}", trial.name, factor);
+  }
+  return fmt::format(
+      "{}camera positions are {:.4f} times the true ones in trial {} (--accept{} corrects it)",
+      kContradict, factor, TrialNames(recording, TrialsWith(recording, [](int) { return true; })),
+      accept);
+}
+
+/// Says that the held-out trials are of another robot; empty where they are not. They are if two
+/// separate robots leave less than half of `left`, the error of one robot (m), and if one robot
+/// whose markers are elsewhere in the held-out trials leaves clearly more than the two: else
+/// clusters were knocked or glued on anew.
+std::string AnotherRobot(const Project& project, const RecordedModel& robot,
+                         const Recording& recording, const AllTrials& all, double left) {
+  std::vector<PartOfRecording> parts = {{"calibration", {}}, {"validation", {}}};
+  for (int i = 0; i < all.recording.posture_count(); ++i) {
+    parts[i < recording.posture_count() ? 0 : 1].postures.push_back(i);
+  }
+  const auto alone = [&](const Recording& part) {
+    return ErrorAlone(robot, part, all.fit.kind, all.options);
+  };
+  const std::vector<double> errors = {alone(recording), alone(all.held_out)};
+  if (!std::isfinite(errors[0]) || !std::isfinite(errors[1])) return "";
+  const double apart = ErrorOverParts(all.recording, parts, errors);
+  if (!AreApart(apart, left) ||
+      AreMarkersApart(ErrorWithOwnMarkers(project, all.fit, all.recording, parts), apart)) {
+    return "";
+  }
+  return fmt::format(
+      "{}one robot leaves an error of {:.3g} mm, robots of their own {:.3g} mm and {:.3g} mm. Are "
+      "they of different robots or days, or was the robot changed in between? Measure one of them "
+      "again",
+      kContradict, 1e3 * left, 1e3 * errors[0], 1e3 * errors[1]);
+}
+
 /// Faults of a robot in all trials, the one that explains most first.
 std::vector<RecordingFault> FaultsOfAll(const AllTrials& all, const CalibrationOptions& options) {
   std::vector<RecordingFault> faults = FindRecordingFaults(all.fit, all.recording, options);
@@ -301,7 +260,7 @@ std::string LeaveOutBriefExchange(const Project& project, const Recording& recor
                                   const ErrorTable& held_out_table, Recording& held_out) {
   const ErrorTable fitted = FittedTable(project, recording, comparison);
   if (!ContrastOf(project, recording, comparison, fitted, held_out_table).suspicious()) return "";
-  const std::optional<Exchange> found =
+  const std::optional<LabelExchange> found =
       ExchangeWithinCluster(project, recording, held_out, comparison);
   if (!found || found->of_estimate) return "";
   // Half of the observations of the two in these trials: a tracker lost them for a while.
@@ -314,8 +273,8 @@ std::string LeaveOutBriefExchange(const Project& project, const Recording& recor
     if (in_trial && Seen(held_out, i, found->a) && Seen(held_out, i, found->b)) ++seen;
   }
   if (2 * static_cast<int>(found->postures.size()) > seen) return "";
-  const std::string text =
-      found->Description(recording, held_out) + ". The two are left out of the judgement there";
+  const std::string text = DescribeExchange(*found, recording, held_out) +
+                           ". The two are left out of the judgement there";
   for (const int exchanged : found->postures) {
     const int first = std::max(0, exchanged - kFilterSpreads);
     const int last = std::min(held_out.posture_count() - 1, exchanged + kFilterSpreads);
@@ -339,33 +298,32 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   const std::string mistake =
       MistakeInHeldOut(project, held_out, robot.knocks, comparison, held_out_table);
   if (!mistake.empty()) return {mistake};
-  const std::optional<Exchange> exchange =
+  const std::optional<LabelExchange> exchange =
       ExchangeWithinCluster(project, recording, held_out, comparison);
   if (exchange) {
-    return {exchange->Description(recording, held_out) +
+    return {DescribeExchange(*exchange, recording, held_out) +
             ". Correct the labels and calibrate again"};
   }
   const AllTrials all = FitTogether(project, robot, recording, held_out, comparison.largest_kind());
   const std::vector<RecordingFault> faults = FaultsOfAll(all, project.calibration);
-  const auto another = [&] {
-    return AnotherRobot(robot, recording, all.held_out, comparison.largest(),
-                        MarkerError(all.fit, all.recording, all.options), all.options);
-  };
   if (!faults.empty()) {
     const GeneralFault general{
         faults.front(), robot.model, robot.base, all.recording, comparison.largest_kind(),
         all.options};
     const FaultsInWords words = ExplainFault(general, project);
-    const std::string other = words.complete ? "" : another();
+    const std::string other =
+        words.complete ? "" : AnotherRobot(project, robot, recording, all, words.left);
     if (!other.empty()) return {other};
     return {kContradict + words.text +
             OrInThoseOfTheEstimate(faults.front(), all.recording, recording)};
   }
   if (!(std::max(contrast.ratio(), contrast.largest_of_clusters) > kContradicted)) return {};
   const std::vector<Knock> knocks = KnocksOfAll(project, robot, all.recording);
-  const std::string other = knocks.size() < kManyKnocks ? "" : another();
-  if (!other.empty()) return {other};
-  if (!knocks.empty()) return {DescribeKnockOfAll(knocks.front(), all.recording)};
+  if (!knocks.empty()) {
+    const double left = MarkerError(all.fit, all.recording, all.options);
+    const std::string other = AnotherRobot(project, robot, recording, all, left);
+    return {other.empty() ? DescribeKnockOfAll(knocks.front(), all.recording) : other};
+  }
   const std::string moved =
       FindMovedBetween(project, all.fit, all.recording, all.options,
                        MovedSuspects(SeenClusters(project, recording), fitted, held_out_table,
@@ -375,19 +333,21 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
   return {DescribeContrast(contrast)};
 }
 
-std::string FindScaleOfTrials(const Project& project, const RecordedModel& robot,
-                              const Recording& recording, const Recording& held_out,
-                              ModelKind kind) {
+std::string TellScaleOfTrials(const Project& project, const RecordedModel& robot,
+                              const Recording& recording, const Recording& held_out, ModelKind kind,
+                              const std::string& of_all) {
   if (recording.trials.empty() || held_out.posture_count() == 0 ||
       held_out.marker_names != recording.marker_names) {
-    return "";
+    return of_all;
   }
-  const AllTrials all = FitTogether(project, robot, recording, held_out, kind);
-  const std::vector<RecordingFault> faults = FaultsOfAll(all, project.calibration);
-  if (faults.empty() || faults.front().kind != FaultKind::kCameraScale) return "";
-  const GeneralFault general{faults.front(), robot.model, robot.base,
-                             all.recording,  kind,        all.options};
-  return kContradict + ExplainFault(general, project).text;
+  try {
+    const AllTrials all = FitTogether(project, robot, recording, held_out, kind);
+    const double left = MarkerError(all.fit, all.recording, all.options);
+    const auto factor = ScaleBetween(project, robot, recording, held_out, kind, left);
+    return factor ? DescribeScaleBetween(*factor, recording) : of_all;
+  } catch (const InputError&) {
+    return of_all;  // too little can be judged
+  }
 }
 
 }  // namespace elastocal

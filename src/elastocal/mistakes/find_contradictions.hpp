@@ -31,11 +31,13 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
                                             const ModelComparison& comparison,
                                             const ErrorTable& held_out_table);
 
-/// Describes a scale of the cameras that is wrong in some trials and right in others, of the
-/// estimate (`recording`) and held-out ones together; empty without. The trials of the estimate
-/// alone make the lengths of the robot wrong by that factor, and do not tell that others disagree.
-std::string FindScaleOfTrials(const Project& project, const RecordedModel& robot,
-                              const Recording& recording, const Recording& held_out,
-                              ModelKind kind);
+/// Describes a wrong scale of the cameras that the lengths of the robot show in the trials of the
+/// estimate (`recording`), given in words as one of all trials (`of_all`). Those trials alone do
+/// not tell whether held-out ones have it, too. If one robot leaves less than half of its error in
+/// all trials with one factor undone in the trials of the estimate, these are named instead, with
+/// the factor.
+std::string TellScaleOfTrials(const Project& project, const RecordedModel& robot,
+                              const Recording& recording, const Recording& held_out, ModelKind kind,
+                              const std::string& of_all);
 
 }  // namespace elastocal

@@ -255,11 +255,10 @@ class FaultsInTurn {
     return faults;
   }
 
-  /// A wrong scale of the cameras as `said`, or that of some trials which others contradict.
-  std::string OfScale(const std::string& said) const {
-    const std::string of_trials =
-        FindScaleOfTrials(project_, robot_, recording_, as_recorded_.validation, fit().kind);
-    return of_trials.empty() ? said : of_trials;
+  /// A wrong scale of the cameras, in words as one of all trials, as held-out trials have it.
+  std::string OfScale(const std::string& of_all) const {
+    return TellScaleOfTrials(project_, robot_, recording_, as_recorded_.validation, fit().kind,
+                             of_all);
   }
 
   /// Finds faults of joints and others that displace several clusters; the search is made once.

@@ -61,12 +61,12 @@ void GiveOwnMarkers(const PartOfRecording& folder, ErrorModel& model, Recording&
   SplitMarkersOf(markers, names, there, model, recording);
 }
 
-/// Root mean square distance of the markers from one robot whose markers have other positions in
-/// each folder, m.
+}  // namespace
+
 double ErrorWithOwnMarkers(const Project& project, const CalibrationResult& together,
-                           Recording recording, const std::vector<PartOfRecording>& folders) {
+                           Recording recording, const std::vector<PartOfRecording>& parts) {
   ErrorModel model = together.model;
-  for (std::size_t k = 1; k < folders.size(); ++k) GiveOwnMarkers(folders[k], model, recording);
+  for (std::size_t k = 1; k < parts.size(); ++k) GiveOwnMarkers(parts[k], model, recording);
   try {
     const BaseParameters base = FindBaseOf(project, model, recording);
     return FitError(Calibrate(model, recording, base, together.kind, project.calibration),
@@ -75,6 +75,12 @@ double ErrorWithOwnMarkers(const Project& project, const CalibrationResult& toge
     return std::numeric_limits<double>::infinity();
   }
 }
+
+bool AreMarkersApart(double by_markers, double apart) {
+  return by_markers < kLeftByMarkers * apart;
+}
+
+namespace {
 
 std::string DescribeFolders(const Project& project, const Recording& recording,
                             const CalibrationResult& together,
@@ -85,7 +91,7 @@ std::string DescribeFolders(const Project& project, const Recording& recording,
     each += fmt::format("{}{} {:.3g} mm", k == 0 ? "" : ", ", folders[k].name, 1e3 * errors[k]);
   }
   const double by_markers = ErrorWithOwnMarkers(project, together, recording, folders);
-  if (by_markers < kLeftByMarkers * apart) {
+  if (AreMarkersApart(by_markers, apart)) {
     return fmt::format(
         "the markers of the recordings are not in the same places: one robot leaves an error of "
         "{:.3g} mm, and {:.3g} mm where each recording has markers of its own. Give markers that "

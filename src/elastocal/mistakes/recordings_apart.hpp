@@ -14,6 +14,16 @@ namespace elastocal {
 /// the cameras that its cause should be sought.
 bool LeavesMoreThanCameras(const CalibrationResult& result, double left);
 
+/// Root mean square distance of the markers from one robot whose markers have other positions in
+/// each part, m; infinite where the equations do not suffice for that.
+double ErrorWithOwnMarkers(const Project& project, const CalibrationResult& together,
+                           Recording recording, const std::vector<PartOfRecording>& parts);
+
+/// Whether parts of a recording differ by the positions of their markers, and not by their robots:
+/// one robot with markers of its own in each part leaves hardly more (1.5 times) than separate
+/// robots do. Both m.
+bool AreMarkersApart(double by_markers, double apart);
+
 /// Finds recordings that no single robot explains; nothing where one does, and for tables.
 ///
 /// **Folders** that were given together are fitted each by itself. They are apart if this leaves
