@@ -403,11 +403,13 @@ def compensate(
     content: str = "everything",
     loads: str = "statics",
     most_left_mm: float = 5.0,
+    most_turned_deg: float = 3.0,
 ) -> Compensation:
     """Corrects a planned motion so that hands, feet and waist go where the plan meant, like the command of that name.
     motion: a Plan, a file (CSV), or a dict of time_s, positions and perhaps support. content: 'everything', or
     'geometry' (without elasticity). loads: 'statics', or 'planned' for fast motion. Raises InfeasibleError where a
-    limit would be broken, or limits leave more than most_left_mm at the end of a limb (a degree counts 5.2 mm)."""
+    limit would be broken, or more than most_left_mm is left at the end of a limb (a degree counts 5.2 mm, of an arm
+    with too few joints 0.5 mm; its hand may be turned by most_turned_deg)."""
 def batch(
     manifest: _Path, folder: _Path, *, workers: int = 0, level: float = 0.05, program: Optional[_Path] = None
 ) -> dict[str, Any]:

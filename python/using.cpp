@@ -52,8 +52,8 @@ struct PyCompensation {
 };
 
 PyCompensation Compensate(const Path& calibration, const py::object& motion, const Path& project,
-                          const std::string& content, const std::string& loads,
-                          double most_left_mm) {
+                          const std::string& content, const std::string& loads, double most_left_mm,
+                          double most_turned_deg) {
   const auto with = Named<MotionLoads>(
       "loads", loads, {{"statics", MotionLoads::kStatics}, {"planned", MotionLoads::kPlanned}});
   const auto wanted = Named<RuntimeContent>(
@@ -62,9 +62,12 @@ PyCompensation Compensate(const Path& calibration, const py::object& motion, con
   PyCompensation made{OpenCalibratedRobot(calibration, project), {}};
   const JointMotion given = MotionOf(motion, made.robot.project);
   const LongCall guard;
-  made.result = CompensateMotion(
-      made.robot.project, MakeRuntimeModel(made.robot.project, made.robot.calibration, wanted),
-      given, {.loads = with, .most_left_m = 1e-3 * most_left_mm});
+  made.result =
+      CompensateMotion(made.robot.project,
+                       MakeRuntimeModel(made.robot.project, made.robot.calibration, wanted), given,
+                       {.loads = with,
+                        .most_left_m = 1e-3 * most_left_mm,
+                        .most_turned_rad = most_turned_deg * M_PI / 180.0});
   made.result.expected = ExpectErrors(made.robot, made.result.planned.motion);
   std::string why;
   for (const std::string& reason : made.result.broken) why += (why.empty() ? "" : "; ") + reason;
@@ -112,12 +115,13 @@ void AddUsing(py::module_& module) {
       "compensate", Compensate, "calibration"_a, "motion"_a, py::kw_only(), "project"_a = "",
       "content"_a = "everything", "loads"_a = "statics",
       "most_left_mm"_a = 1e3 * CompensateMotionOptions{}.most_left_m,
+      "most_turned_deg"_a = CompensateMotionOptions{}.most_turned_rad * 180.0 / M_PI,
       "Corrects a planned motion so that hands, feet and waist go where the plan meant, like the "
       "command of that name. motion: a Plan, a file (CSV), or a dict of time_s, positions and "
       "perhaps support. content: 'everything', or 'geometry' (without elasticity). loads: "
       "'statics', or 'planned' for fast motion. Raises InfeasibleError where a limit would be "
-      "broken, or limits leave more than most_left_mm at the end of a limb (a degree counts "
-      "5.2 mm).");
+      "broken, or more than most_left_mm is left at the end of a limb (a degree counts 5.2 mm, of "
+      "an arm with too few joints 0.5 mm; its hand may be turned by most_turned_deg).");
 }
 
 }  // namespace elastocal::python

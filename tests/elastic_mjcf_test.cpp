@@ -54,8 +54,7 @@ class ElasticMjcf : public testing::Test {
     const CalibratedUrdf apart = MakeCalibratedUrdf(ReadFile(project_.urdf), project_.urdf.string(),
                                                     result, ZeroOffsets::kEncoder);
     const RobotTree calibrated = ParseUrdf(apart.text, "calibrated");
-    std::vector<SeriesSpring> springs =
-        SeriesSprings(result, calibrated, legs_, project_.motion.rest);
+    std::vector<SeriesSpring> springs = SeriesSprings(result, calibrated, legs_);
     const auto soles = SpringsOfSoles(stored_.soles, calibrated, legs_);
     springs.insert(springs.end(), soles.begin(), soles.end());
     return MakeCalibratedMjcf(user, "user.xml", project_.tree, calibrated, apart.encoder_offsets,
@@ -188,10 +187,32 @@ class ElasticMjcf : public testing::Test {
     Eigen::Map<Eigen::Vector3d>(data.xfrc_applied + 6 * foot + 3) = lever.cross(up);
   }
 
-  /// Of the root link on the left foot, which is held to the floor, m: by how much it gives way,
-  /// and how far MuJoCo has it from there.
+  /// Moments on the right leg about the origin of the root link, in its axes: of PushUp, and of the
+  /// leg's own weight.
+  Eigen::Vector3d MomentOfFloor(const mjModel& model, double force, const mjData& data) const {
+    const int foot = mj_name2id(&model, mjOBJ_BODY, LinkName(FootOf(FindLeg("leg_right"))).c_str());
+    return MomentInRoot(model, data, data.xpos + 3 * foot, force);
+  }
+  Eigen::Vector3d MomentOfOwnWeight(const mjModel& model, mjData& data) const {
+    mj_comPos(&model, &data);
+    const int hip = model.jnt_bodyid[mj_name2id(&model, mjOBJ_JOINT, "leg_right_elastic_rx")];
+    return MomentInRoot(model, data, data.subtree_com + 3 * hip,
+                        -9.81 * model.body_subtreemass[hip]);
+  }
+  Eigen::Vector3d MomentInRoot(const mjModel& model, const mjData& data, const double* at,
+                               double up) const {
+    const Joint& hip =
+        project_.tree.joints[static_cast<std::size_t>(FindLeg("leg_right").joints.front())];
+    const Transform T = BodyPose(model, data, LinkName(hip.parent_link));
+    const Eigen::Vector3d lever = Eigen::Map<const Eigen::Vector3d>(at) - T.translation();
+    return T.linear().transpose() * lever.cross(Eigen::Vector3d(0, 0, up));
+  }
+
+  /// Of the root link on the left foot, which is held to the floor, m and rad: by how much it gives
+  /// way, and how far MuJoCo has it from there.
   struct Stands {
     double deflection = 0.0, off = 0.0;
+    double turn = 0.0, turned_off = 0.0;
   };
 
   Stands OnLeftFoot(const Eigen::VectorXd& q) const {
@@ -210,11 +231,14 @@ class ElasticMjcf : public testing::Test {
     const Transform T_body_sole =
         project_.tree.links[static_cast<std::size_t>(FootOf(leg))].T_body_link.inverse() *
         project_.tree.links[static_cast<std::size_t>(leg.foot_link)].T_body_link;
-    const Eigen::Vector3d root = (T_body_sole.inverse() * T_foot_root).translation();
-    const double deflection =
-        (elastic.root_pose().translation() - rigid.root_pose().translation()).norm();
-    const double off = (elastic.root_pose().translation() - root).norm();
-    return {deflection, off};
+    const Transform T_sole_root = T_body_sole.inverse() * T_foot_root;
+    const auto angle = [&](const auto& from, const auto& to) {
+      return Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle();
+    };
+    const auto& expected = elastic.root_pose();
+    return {(expected.translation() - rigid.root_pose().translation()).norm(),
+            (expected.translation() - T_sole_root.translation()).norm(),
+            angle(expected, rigid.root_pose()), angle(expected, T_sole_root)};
   }
 
   Project project_;
@@ -229,6 +253,8 @@ constexpr double kShare = 1e-3;
 /// The springs of a leg are in the axes of its foot, which is inclined against the root link here
 /// by some tenths of a radian.
 constexpr double kShareOnLeg = 0.03;
+/// The same of the turn there, most of which is that of joints.
+constexpr double kShareOfTurn = 4e-3;
 /// The spring of a sole bears all but the link of the foot in MuJoCo.
 constexpr double kShareOfFoot = 0.03;
 
@@ -265,11 +291,13 @@ TEST_F(ElasticMjcf, StandsOnOneFootAsTheElasticModelDoes) {
   const Stands stands = OnLeftFoot(Posture(7));
   EXPECT_GT(stands.deflection, 1e-2);
   EXPECT_LT(stands.off, kShareOnLeg * stands.deflection);
+  EXPECT_GT(stands.turn, 1e-2);
+  EXPECT_LT(stands.turned_off, kShareOfTurn * stands.turn);
 }
 
-// The leg weighs a sixth of the robot. While it hangs it is as the geometry has it, and from there
-// it gives way by the share of the weight that the floor bears, as much on the whole weight as
-// eq. 6 says.
+// The leg weighs a sixth of the robot. While it hangs it is as long as the geometry has it, and
+// from there it gives way by the share of the weight that the floor bears, as much on the whole
+// weight as eq. 6 says. It turns as eq. 6 says on the whole weight.
 TEST_F(ElasticMjcf, ALegGivesWayByItsShareOfTheWeight) {
   for (auto& [name, value] : stored_.joint_errors) value = 0.0;
   for (const char* along : {"x", "y", "z"}) {
@@ -290,10 +318,14 @@ TEST_F(ElasticMjcf, ALegGivesWayByItsShareOfTheWeight) {
       return data->qpos[model->jnt_qposadr[mj_name2id(model, mjOBJ_JOINT, name)]];
     };
     EXPECT_NEAR(position("leg_right_elastic_z"), share * 1e-6 * (all - leg), 0.02 * 1e-6 * leg);
-    if (share > 0.0) continue;
-    // Motors give way, so that the robot leans by some mrad, of the leg's lever of 85 mm a part.
-    EXPECT_NEAR(position("leg_right_elastic_rx"), 0.0, 0.1 * 1e-5 * leg * 0.085);
-    EXPECT_NEAR(position("leg_right_elastic_ry"), 0.0, 0.1 * 1e-5 * leg * 0.085);
+    const Eigen::Vector3d floor = MomentOfFloor(*model, share * all, *data);
+    const Eigen::Vector3d own = MomentOfOwnWeight(*model, *data);
+    EXPECT_GT(own.norm(), 15.0);
+    // Of its own weight, all of it: at run time the share of it.
+    EXPECT_NEAR(position("leg_right_elastic_rx"), 1e-5 * (floor + own).x(),
+                0.04 * 1e-5 * own.norm());
+    EXPECT_NEAR(position("leg_right_elastic_ry"), 1e-5 * (floor + own).y(),
+                0.04 * 1e-5 * own.norm());
   }
 }
 

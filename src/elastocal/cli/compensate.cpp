@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -19,6 +20,7 @@
 #include "elastocal/pipeline/result_folder.hpp"
 #include "elastocal/planning/compensate_motion.hpp"
 #include "elastocal/planning/planned_motion_file.hpp"
+#include "elastocal/runtime/core_equations.h"
 
 namespace elastocal::cli {
 namespace {
@@ -28,10 +30,14 @@ struct CompensateOptions {
   std::string calibration, project, motion, output;
   std::string as = "compensated", loads = "statics";
   double most_left_mm = 1e3 * CompensateMotionOptions{}.most_left_m;
+  double most_turned_deg = CompensateMotionOptions{}.most_turned_rad * 180.0 / M_PI;
   double ease_s = 0.0;
 };
 
-bool IsPlaceFirst(const LeftAtLimb& one) { return one.arm_m < LeftAtLimb{}.arm_m; }
+/// What a degree of attitude counts at the end of a limb: of an arm with too few joints, and of any
+/// other.
+std::string DegreeOfFew() { return fmt::format("{:.1f} mm", DegreeAsMillimetres(EC_ARM_OF_FEW)); }
+std::string Degree() { return fmt::format("{:.1f} mm", DegreeAsMillimetres(EC_ARM)); }
 
 /// Table by limb, if any limb that does not yield has a deviation.
 std::string DescribeLeft(const CompensatedMotion& result) {
@@ -44,26 +50,28 @@ std::string DescribeLeft(const CompensatedMotion& result) {
   const bool timed = time_s.size() > 1;
   const double period = timed ? (time_s[last] - time_s[0]) / static_cast<double>(last) : 1.0;
   TextTable table(
-      {"left at the end of", "most, mm", "at s",
+      {"left at the end of", "most, mm", "at s", "most, deg",
        fmt::format("{} above {} mm", timed ? "seconds" : "samples", 1e3 * kLeftOver_m)});
   for (const LeftAtLimb& one : result.left) {
-    table.Add({one.limb + (one.yields          ? " (yields)"
-                           : IsPlaceFirst(one) ? " (place first)"
-                                               : ""),
+    table.Add({one.limb + (one.yields        ? " (yields)"
+                           : one.place_first ? " (place first)"
+                                             : ""),
                fmt::format("{:.2f}", 1e3 * one.most.value), fmt::format("{:.2f}", one.most.time_s),
+               fmt::format("{:.2f}", one.most_turned.value * 180.0 / M_PI),
                fmt::format("{:.{}f}", period * one.samples, timed ? 2 : 0)});
   }
-  const bool any_place_first = std::ranges::any_of(result.left, IsPlaceFirst);
-  return table.Render() +
-         "A degree counts 5.2 mm. (yields): fewer than six joints, which cannot correct all\n" +
-         (any_place_first ? "(place first): too few joints for place and attitude; a degree counts "
-                            "0.5 mm\n\n"
-                          : "\n");
+  const bool any_place_first = std::ranges::any_of(result.left, &LeftAtLimb::place_first);
+  return table.Render() + "A degree counts " + Degree() +
+         ". (yields): fewer than six joints, which cannot correct all\n" +
+         (any_place_first
+              ? "(place first): too few joints for place and attitude; a degree counts " +
+                    DegreeOfFew() + "\n\n"
+              : "\n");
 }
 
 /// Expected errors because the calibration does not know the geometry better; they are in none of
 /// the other figures.
-std::string DescribeExpected(const std::vector<ExpectedAtLimb>& expected, bool stands) {
+std::string DescribeExpected(const std::vector<ExpectedAtLimb>& expected, bool from_foot) {
   if (expected.empty()) {
     return "How far the real robot will be from that is not known: the calibration has no "
            "covariance\n";
@@ -76,7 +84,7 @@ std::string DescribeExpected(const std::vector<ExpectedAtLimb>& expected, bool s
   const std::string of_all =
       ": what the calibration does not know of the geometry. A single robot may have\ntwice as "
       "much. ";
-  if (!stands) {
+  if (!from_foot) {
     return "\n" + table.Render() + "Seen from the root link" + of_all +
            "Springs in fast motion come on top. Measured places of markers on hands and root\nlink "
            "make it less (calibrate --marker-places)\n";
@@ -114,7 +122,7 @@ std::string DescribeCompensation(const CompensatedMotion& result, const Project&
              "Left at the ends of limbs of the calibrated model (but for those that yield): at "
              "most {:.3f} mm and {:.4f} deg\n",
              1e3 * result.residual_m, result.residual_rad * kDegreesARadian) +
-         DescribeExpected(result.expected, !project.soles.empty());
+         DescribeExpected(result.expected, IsSeenFromAFoot(project, result.planned.motion));
 }
 
 int Compensate(const CompensateOptions& options) {
@@ -137,6 +145,7 @@ int Compensate(const CompensateOptions& options) {
       robot.project, model, planned,
       {.loads = options.loads == "planned" ? MotionLoads::kPlanned : MotionLoads::kStatics,
        .most_left_m = 1e-3 * options.most_left_mm,
+       .most_turned_rad = options.most_turned_deg * M_PI / 180.0,
        .ease_s = options.ease_s});
   result.expected = ExpectErrors(robot, result.planned.motion);
   const bool fine = result.broken.empty();
@@ -186,9 +195,17 @@ void AddCompensate(CLI::App& app, Action& action) {
       ->capture_default_str();
   command
       ->add_option("--most-left-mm", options->most_left_mm,
-                   "Refuse a motion where limits leave more at the end of a limb of six joints or "
-                   "more; a degree counts 5.2 mm, of an arm with too few joints 0.5 mm")
+                   "Refuse a motion where more is left at the end of a limb that does not yield; a "
+                   "degree counts " +
+                       Degree() + ", of an arm with too few joints " + DegreeOfFew())
       ->check(InBounds("compensate --most-left-mm"))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--most-turned-deg", options->most_turned_deg,
+          "Refuse a motion where a hand is turned by more from its planned attitude, of an "
+          "arm with too few joints for place and attitude")
+      ->check(InBounds("compensate --most-turned-deg"))
       ->capture_default_str();
   command
       ->add_option("--ease-s", options->ease_s,

@@ -6,7 +6,6 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/transform.hpp"
-#include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/statics.hpp"
 
 namespace elastocal {
@@ -65,29 +64,21 @@ class SpringCollector {
 
 /// What the leg that begins with a joint weighs.
 struct LegWeight {
-  double share = 0.0;  ///< of the robot's
-  Vector6d load;  ///< while it hangs: force, and moment about the root link's origin, in its axes
+  double share = 0.0;     ///< of the robot's
+  Eigen::Vector3d force;  ///< in the axes of the root link, N
 };
 
-LegWeight WeightOfLeg(const RobotTree& tree, int joint, const Eigen::VectorXd& q) {
+LegWeight WeightOfLeg(const RobotTree& tree, int joint) {
   std::vector<bool> beyond(Size(tree.body_count()), false);
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
     beyond[k + 1] = static_cast<int>(k) == joint || beyond[Size(tree.joints[k].parent_body)];
   }
-  const std::vector<Transform> T_root_link = LinkTransforms(tree, q);
   double all = 0.0, mass = 0.0;
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < tree.links.size(); ++i) {
-    const Link& link = tree.links[i];
+  for (const Link& link : tree.links) {
     all += link.mass;
-    if (!beyond[Size(link.body)]) continue;
-    mass += link.mass;
-    moment += link.mass * (T_root_link[i] * link.com);
+    if (beyond[Size(link.body)]) mass += link.mass;
   }
-  LegWeight weight;
-  weight.share = all > 0.0 ? mass / all : 0.0;
-  weight.load << mass * kGravity, moment.cross(kGravity);
-  return weight;
+  return {.share = all > 0.0 ? mass / all : 0.0, .force = mass * kGravity};
 }
 
 void AddLegSprings(const ErrorModel& model, const Geometry& geometry, const Leg& leg, int joint,
@@ -97,11 +88,15 @@ void AddLegSprings(const ErrorModel& model, const Geometry& geometry, const Leg&
     for (int axis = 0; axis < 6; ++axis) {
       const bool slides = axis < 3;
       const Eigen::Vector3d along = leg.R_floor_foot.col(axis % 3);
-      const double compliance = geometry.leg_compliance[i][axis] * (1.0 - weight.share);
-      const double own = along.dot(slides ? weight.load.head<3>() : weight.load.tail<3>());
-      to.Add(joint, SpringPlace::kLeg,
-             model.legs[i].name + ".compliance_" + (slides ? "" : "r") + kAxisNames[axis % 3],
-             slides, along, Eigen::Vector3d::Zero(), compliance, -compliance * own);
+      const std::string name =
+          model.legs[i].name + ".compliance_" + (slides ? "" : "r") + kAxisNames[axis % 3];
+      double compliance = geometry.leg_compliance[i][axis], unloaded = 0.0;
+      if (slides) {
+        compliance *= 1.0 - weight.share;
+        unloaded = -compliance * along.dot(weight.force);
+      }
+      to.Add(joint, SpringPlace::kLeg, name, slides, along, Eigen::Vector3d::Zero(), compliance,
+             unloaded);
     }
   }
 }
@@ -109,8 +104,7 @@ void AddLegSprings(const ErrorModel& model, const Geometry& geometry, const Leg&
 }  // namespace
 
 std::vector<SeriesSpring> SeriesSprings(const CalibrationResult& calibration,
-                                        const RobotTree& calibrated, const std::vector<Leg>& legs,
-                                        const Eigen::VectorXd& rest) {
+                                        const RobotTree& calibrated, const std::vector<Leg>& legs) {
   const ErrorModel& model = calibration.model;
   const Geometry geometry = ApplyErrors(model, calibration.delta);
   SpringCollector collector;
@@ -119,7 +113,7 @@ std::vector<SeriesSpring> SeriesSprings(const CalibrationResult& calibration,
     const Geometry::JointConstants& constants = geometry.joints[static_cast<std::size_t>(k)];
     if (joint.parent_body == 0) {
       if (const Leg* leg = LegFrom(legs, k)) {
-        AddLegSprings(model, geometry, *leg, k, WeightOfLeg(calibrated, k, rest), collector);
+        AddLegSprings(model, geometry, *leg, k, WeightOfLeg(calibrated, k), collector);
       }
       for (int axis = 0; axis < 3; ++axis) {
         collector.Add(

@@ -48,12 +48,14 @@ struct SeriesSpring {
 ///
 /// A leg's spring also bears the weight of the leg itself. The robot at run time counts that weight
 /// by the foot's share of the robot's weight (ec_leg_load), because the geometry is that of a leg
-/// that hangs when it is lifted. So the spring is unloaded at its position 0 while the leg hangs at
-/// `rest` (by coordinate), and its compliance is smaller by the leg's share of all masses. The
-/// deflections are then those of run time, whatever a foot bears.
+/// that hangs when it is lifted. So a spring that slides is at its position 0 while the leg
+/// hangs from a level root link, and its compliance is smaller by the leg's share of all masses. It
+/// then deflects as at run time, whatever its foot bears. No such change of a spring that turns
+/// suits every load, because the floor presses at another point than below the leg's centre of
+/// mass. Its compliance is that of the calibration: it turns as at run time on one foot, and a
+/// share 1 - s too far by the moment of the leg's own weight where the foot bears the share s.
 std::vector<SeriesSpring> SeriesSprings(const CalibrationResult& calibration,
-                                        const RobotTree& calibrated, const std::vector<Leg>& legs,
-                                        const Eigen::VectorXd& rest);
+                                        const RobotTree& calibrated, const std::vector<Leg>& legs);
 
 /// The springs below the feet that `soles` has: along the axis that is upright while the foot is
 /// flat, in the frame of the child link of the leg's last joint. That link is then on the floor's

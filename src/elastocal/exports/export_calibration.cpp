@@ -105,7 +105,7 @@ std::string MjcfOf(const CalibratedRobot& robot, const StoredCalibration& calibr
   std::vector<SeriesSpring> springs;
   if (options.mjcf_springs) {
     springs = SeriesSprings(ResultOf(RestoreRobot(robot.project, calibration)), calibrated,
-                            LegsOf(robot.project), robot.project.motion.rest);
+                            LegsOf(robot.project));
     const auto soles = SpringsOfSoles(calibration.soles, calibrated, LegsOf(robot.project));
     springs.insert(springs.end(), soles.begin(), soles.end());
   }

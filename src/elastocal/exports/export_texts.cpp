@@ -184,8 +184,7 @@ std::string MakeFlexJointsYaml(const CalibrationResult& result, const RobotTree&
   for (int i = 0; i < unit.model.parameter_count(); ++i) {
     if (IsCompliance(unit.model.parameters[static_cast<std::size_t>(i)].kind)) unit.delta[i] = 1.0;
   }
-  const std::vector<SeriesSpring> springs =
-      SeriesSprings(unit, calibrated, legs, Eigen::VectorXd::Zero(calibrated.coordinate_count()));
+  const std::vector<SeriesSpring> springs = SeriesSprings(unit, calibrated, legs);
   std::string text =
       YamlComment(heading) +
       YamlComment(

@@ -217,6 +217,7 @@ std::vector<Bound> BoundsOfCommands() {
       {"plan --limit-margin-deg", "deg", 0, 45, "more is no room for a correction"},
       {"plan --leg-geometry-scale", "", 0, 100, "a factor on errors of millimetres"},
       {"compensate --most-left-mm", "mm", 0, 1e3, "an arm"},
+      {"compensate --most-turned-deg", "deg", 0, 180, "any attitude"},
       {"compensate --ease-s", "s", 0, 10, "a correction that comes later than a motion ends"},
   };
 }

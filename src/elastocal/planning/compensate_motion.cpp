@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -25,10 +26,6 @@ namespace {
 
 double TimeAt(const JointMotion& motion, Eigen::Index i) {
   return motion.time_s.size() > 0 ? motion.time_s[i] : static_cast<double>(i);
-}
-
-void KeepLarger(double value, double time_s, const std::string& where, MotionExtreme& extreme) {
-  if (value > extreme.value) extreme = {value, time_s, where};
 }
 
 void KeepSmaller(double value, double time_s, const std::string& where, MotionExtreme& extreme) {
@@ -110,39 +107,21 @@ Eigen::VectorXd Speeds(const RobotTree& tree) {
   return speeds;
 }
 
-std::vector<LeftAtLimb> NothingLeft(const RuntimeModel& model) {
-  std::vector<LeftAtLimb> left;
-  for (std::size_t t = 0; t < model.tips.size(); ++t) {
-    left.push_back({.limb = model.tip_names[t],
-                    .most = {},
-                    .yields = model.tips[t].yields != 0,
-                    .arm_m = model.tips[t].arm});
-  }
-  return left;
-}
-
-void LookAtLimbs(const Compensator& compensator, double time_s, std::vector<LeftAtLimb>& left) {
-  for (std::size_t t = 0; t < left.size(); ++t) {
-    const double now = compensator.tip_left_m(static_cast<int>(t));
-    KeepLarger(now, time_s, left[t].limb, left[t].most);
-    if (now > kLeftOver_m) ++left[t].samples;
-  }
-}
-
 /// Judges the deviations. `reasons` names the limits that cause them.
-void JudgeLeft(std::vector<std::string> reasons, double most_left_m, CompensatedMotion& result) {
-  const LeftAtLimb* worst = nullptr;
+void JudgeLeft(std::vector<std::string> reasons, const CompensateMotionOptions& options,
+               CompensatedMotion& result) {
+  std::vector<std::string> exceeded;
   for (const LeftAtLimb& one : result.left) {
-    if (!one.yields && (worst == nullptr || one.most.value > worst->most.value)) worst = &one;
+    if (one.yields) continue;
+    std::ranges::move(Exceeded(one, options.most_left_m, options.most_turned_rad),
+                      std::back_inserter(exceeded));
   }
-  if (worst == nullptr || worst->most.value <= most_left_m) {
+  if (exceeded.empty()) {
     result.warnings = std::move(reasons);
     return;
   }
   result.broken = std::move(reasons);
-  result.broken.push_back(
-      fmt::format("{:.2f} mm are left at the end of {} at {:.2f} s, more than {:.2f} mm",
-                  1e3 * worst->most.value, worst->limb, worst->most.time_s, 1e3 * most_left_m));
+  std::ranges::move(exceeded, std::back_inserter(result.broken));
 }
 
 /// Computes distances of the calibrated robot's parts.
@@ -366,7 +345,7 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
     clearance.Look(T_root_link, TimeAt(planned, i), result.clearance);
     if (balance) balance->Look(T_root_link);
   }
-  JudgeLeft(stopped.Describe(static_cast<int>(motion.q.rows())), options.most_left_m, result);
+  JudgeLeft(stopped.Describe(static_cast<int>(motion.q.rows())), options, result);
   if (balance) balance->Store(result);
   status &= ~CompensatorStatus{EC_JOINT_LIMIT | EC_CORRECTION_CUT};
   if (status != 0) result.broken.push_back(DescribeStatus(status));

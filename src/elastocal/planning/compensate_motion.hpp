@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "elastocal/planning/expected_errors.hpp"
+#include "elastocal/planning/left_at_limbs.hpp"
 #include "elastocal/planning/planned_motion_file.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/robot/joint_motion.hpp"
@@ -17,27 +19,6 @@ enum class MotionLoads {
   kStatics,  ///< loads of each posture at rest
   kPlanned   ///< torques of the motion by inverse dynamics, for fast motion; needs soles
 };
-
-/// The worst value over a motion, and where it occurs.
-struct MotionExtreme {
-  double value = 0.0;
-  double time_s = 0.0;
-  std::string where = {};  ///< a joint or a pair of parts
-};
-
-/// Deviation of the end of a limb from its place in a motion, due to limits. It is a distance, to
-/// which an angle adds the displacement that it causes at `arm_m`.
-struct LeftAtLimb {
-  std::string limb;  ///< a chain of the project
-  MotionExtreme most;
-  int samples = 0;  ///< number of samples with a larger deviation than kLeftOver_m
-  /// The limb has fewer than six joints and shares some with a limb of at least six, whose end has
-  /// priority: for example a head on a trunk that carries arms.
-  bool yields = false;
-  double arm_m = 0.3;  ///< a tenth where a limb has too few joints for place and attitude
-};
-
-inline constexpr double kLeftOver_m = 2e-4;
 
 /// A planned motion with corrected joint positions, which bring hands, feet and waist of the
 /// calibrated robot to their planned poses.
@@ -73,8 +54,9 @@ struct CompensatedMotion {
 struct CompensateMotionOptions {
   MotionLoads loads = MotionLoads::kStatics;
   /// A motion is refused if the deviation at the end of a limb that does not yield (LeftAtLimb)
-  /// exceeds this.
+  /// exceeds `most_left_m`, or its angle `most_turned_rad` where the place comes first.
   double most_left_m = 5e-3;
+  double most_turned_rad = 3.0 * M_PI / 180.0;
   /// Time in which a correction reaches its largest speed relative to the plan (a tenth of the
   /// joint's), and in which it brakes, s (Compensator::EaseChanges). 0: without limit.
   double ease_s = 0.0;

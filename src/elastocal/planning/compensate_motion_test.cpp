@@ -104,13 +104,40 @@ TEST(CompensateMotion, ARefusalNamesTheJointThatStopsAtItsLimit) {
   talos.Hold("leg_left_4_joint");
   const CompensatedMotion result = talos.Compensate({.most_left_m = 1e-3});
   ASSERT_EQ(result.broken.size(), 2U);
-  EXPECT_NE(
-      result.broken[1].find("mm are left at the end of leg_left at 0.00 s, more than 1.00 mm"),
-      std::string::npos)
+  EXPECT_NE(result.broken[1].find("mm are left at the end of leg_left at 0.00 s, more than 1.00 mm "
+                                  "(a degree counts 5.2 mm)"),
+            std::string::npos)
       << result.broken[1];
   EXPECT_EQ(result.broken[0].find("stopped by a joint's limit: leg_left_4_joint ("), 0U)
       << result.broken[0];
+  EXPECT_NE(result.broken[0].find("(a degree counts 5.2 mm; 1 of 1 samples"), std::string::npos);
   EXPECT_NE(result.broken[0].find("plan the motion further from this limit"), std::string::npos);
+}
+
+// A hand that is mounted eleven degrees off, on an arm of four joints, which brings it to its
+// place.
+TEST(CompensateMotion, AHandInItsPlaceIsRefusedForItsAttitude) {
+  const Project project = ReadProject(SourceFile("tests/robots/mini_humanoid_project.yaml"));
+  RuntimeModel model =
+      MakeRuntimeModel(project, RandomCalibration(project, 1), RuntimeContent::kNominal);
+  const auto hand = std::ranges::find(model.tip_names, "left_arm") - model.tip_names.begin();
+  ec_joint& elbow = model.calibrated[static_cast<std::size_t>(
+      model.tips[static_cast<std::size_t>(hand)].frame.body - 1)];
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY()).matrix();
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(elbow.body.R);
+  R = turn * R.eval();
+  JointMotion plan;
+  plan.q = project.motion.rest.transpose();
+  const auto most_turned = [&](double degrees) {
+    return CompensateMotion(project, model, plan, {.most_turned_rad = degrees * M_PI / 180.0});
+  };
+  const CompensatedMotion result = most_turned(3.0);
+  EXPECT_LT(result.residual_m, 2e-3);
+  ASSERT_FALSE(result.broken.empty());
+  EXPECT_NE(result.broken.back().find("deg are left at the end of left_arm at 0.00 s, more than 3"),
+            std::string::npos)
+      << result.broken.back();
+  EXPECT_TRUE(most_turned(10.0).broken.empty());
 }
 
 // Less than what is asked is a warning that names the limb, and the motion is played.

@@ -26,9 +26,10 @@ std::string MakeCompensationJson(const CompensatedMotion& result) {
     json["left"].push_back({{"limb", one.limb},
                             {"most_mm", 1e3 * one.most.value},
                             {"time_s", one.most.time_s},
+                            {"most_deg", one.most_turned.value * 180.0 / M_PI},
                             {"samples", one.samples},
                             {"yields", one.yields},
-                            {"degree_mm", 1e3 * one.arm_m * M_PI / 180.0}});
+                            {"degree_mm", DegreeAsMillimetres(one.arm_m)}});
   }
   json["expected"] = nlohmann::ordered_json::array();
   for (const ExpectedAtLimb& one : result.expected) {

@@ -47,9 +47,9 @@ class PlanWatch {
         looks_a_picture_(LooksAPicture(plan)),
         root_(std::move(root)) {
     for (std::size_t t = 0; t < model.tips.size(); ++t) {
-      const Chain& chain = *std::ranges::find(project.chains, model.tip_names[t], &Chain::name);
+      const Chain& chain = project.chains[Size(FindChain(project, model.tip_names[t]))];
       const bool is_foot = std::ranges::count(project.soles, chain.tip_link, &Sole::link) > 0;
-      if (!is_foot && IsArm(model.tips[t])) hands_links_.push_back(chain.tip_link);
+      if (!is_foot && IsArm(model, t)) hands_links_.push_back(chain.tip_link);
     }
     MarkLandings();
     std::vector<PlaybackTip> tips;

@@ -109,6 +109,12 @@ std::vector<ExpectedAtLimb> ExpectErrors(const Project& project,
   return expected;
 }
 
+bool IsSeenFromAFoot(const Project& project, const JointMotion& motion) {
+  if (motion.support.empty()) return !project.soles.empty();
+  return std::ranges::any_of(motion.support,
+                             [](const std::vector<int>& links) { return !links.empty(); });
+}
+
 std::vector<ExpectedAtLimb> ExpectErrors(const CalibratedRobot& robot, const JointMotion& motion) {
   const CalibrationFiles files = FindCalibrationFiles(robot.calibration.source);
   return ExpectErrors(robot.project, robot.calibration, ReadCalibrationFiles(files), motion);

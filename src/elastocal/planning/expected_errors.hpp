@@ -34,4 +34,8 @@ std::vector<ExpectedAtLimb> ExpectErrors(const Project& project,
 /// covariance file cannot be used.
 std::vector<ExpectedAtLimb> ExpectErrors(const CalibratedRobot& robot, const JointMotion& motion);
 
+/// Whether errors are seen from a foot, in some posture at least, and not from the root link alone:
+/// the motion has a foot stand, or leaves that open while the robot has soles.
+bool IsSeenFromAFoot(const Project& project, const JointMotion& motion);
+
 }  // namespace elastocal

@@ -52,6 +52,17 @@ TEST_F(ExpectedErrors, OfTheZeroOfAWristAreThoseOfItsHand) {
   }
 }
 
+// A robot with soles can be held while its arms move.
+TEST_F(ExpectedErrors, AreSeenFromTheRootLinkWhereNoFootStands) {
+  JointMotion motion;
+  motion.q = project_.motion.rest.transpose().replicate(2, 1);
+  EXPECT_TRUE(IsSeenFromAFoot(project_, motion));
+  motion.support = {{}, {}};
+  EXPECT_FALSE(IsSeenFromAFoot(project_, motion));
+  motion.support[1] = {FindLink(project_.tree, "left_sole_link")};
+  EXPECT_TRUE(IsSeenFromAFoot(project_, motion));
+}
+
 TEST_F(ExpectedErrors, AreNotKnownWithoutACovariance) {
   JointMotion motion;
   motion.q = project_.motion.rest.transpose();

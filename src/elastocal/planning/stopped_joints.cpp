@@ -12,6 +12,22 @@ namespace {
 
 constexpr double kDegreesARadian = 180.0 / M_PI;
 
+/// At which length turns count at the end of the worst limb that a coordinate moves
+/// (Compensator::left_m).
+double ArmOfWorstLimb(const Compensator& compensator, std::size_t coordinate) {
+  const ec_robot& robot = compensator.robot();
+  double most = -1.0, arm_m = 0.0;
+  for (int t = 0; t < robot.tips; ++t) {
+    const ec_tip& tip = robot.tip[t];
+    if (tip.yields != 0 || tip.branch != robot.branch_of_coordinate[coordinate]) continue;
+    const double left = compensator.tip_left_m(t);
+    if (left <= most) continue;
+    most = left;
+    arm_m = tip.arm;
+  }
+  return arm_m;
+}
+
 }  // namespace
 
 std::string StoppedJoints::JointAt(const Compensator& compensator, Eigen::Index coordinate) const {
@@ -27,18 +43,22 @@ std::string StoppedJoints::JointAt(const Compensator& compensator, Eigen::Index 
 void StoppedJoints::Look(const Compensator& compensator, double time_s, CompensatorStatus kind,
                          Worst& worst) {
   std::vector<std::string> joints;
-  double left = 0.0;
+  double left = -1.0, arm_m = 0.0;
   const std::vector<unsigned>& stopped = compensator.stopped();
   for (std::size_t c = 0; c < stopped.size(); ++c) {
     if (stopped[c] != kind) continue;
     joints.push_back(JointAt(compensator, static_cast<Eigen::Index>(c)));
-    left = std::max(left, compensator.left_m(static_cast<int>(c)));
+    const double here = compensator.left_m(static_cast<int>(c));
+    if (here <= left) continue;
+    left = here;
+    arm_m = ArmOfWorstLimb(compensator, c);
   }
   if (joints.empty()) return;
   ++worst.samples;
   if (left < worst.left_m) return;
   worst.left_m = left;
   worst.time_s = time_s;
+  worst.arm_m = arm_m;
   worst.joints = std::move(joints);
 }
 
@@ -52,10 +72,10 @@ std::vector<std::string> StoppedJoints::Describe(int samples) const {
   const auto describe = [&](const Worst& worst, const char* what, const char* advice) {
     if (worst.samples == 0) return;
     sentences.push_back(
-        fmt::format("{}: {} at {:.2f} s, where {:.2f} mm are left at the end of its limb ({} "
-                    "of {} samples are like this); {}",
+        fmt::format("{}: {} at {:.2f} s, where {:.2f} mm are left at the end of its limb (a degree "
+                    "counts {:.1f} mm; {} of {} samples are like this); {}",
                     what, fmt::join(worst.joints, ", "), worst.time_s, 1e3 * worst.left_m,
-                    worst.samples, samples, advice));
+                    DegreeAsMillimetres(worst.arm_m), worst.samples, samples, advice));
   };
   describe(
       limit_, "stopped by a joint's limit",

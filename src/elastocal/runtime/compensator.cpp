@@ -227,6 +227,14 @@ double Compensator::tip_left_m(int tip) const noexcept {
   return std::sqrt(ec_dot(error, error) + ec_dot(&error[3], &error[3]));
 }
 
+double Compensator::tip_left_rad(int tip) const noexcept {
+  ec_pose now;
+  double error[6];
+  ec_tip_pose(&robot_, tip, &memory_, &now);
+  ec_tip_error(&now, &memory_.target[tip], 1.0, error);
+  return std::sqrt(ec_dot(&error[3], &error[3]));
+}
+
 Eigen::Isometry3d Compensator::root_pose() const noexcept { return ToIsometry(root_); }
 
 }  // namespace elastocal

@@ -146,13 +146,14 @@ class Compensator {
   const std::vector<unsigned>& stopped() const noexcept { return stopped_; }
 
   /// For the last Command: the largest deviation at the ends of limbs that a coordinate can move,
-  /// m; an angle counts as its displacement at 0.3 m (ec_tip::arm). 0 for a coordinate that moves
-  /// none.
+  /// m; an angle counts as its displacement at ec_tip::arm. 0 for a coordinate that moves none.
   double left_m(int coordinate) const noexcept;
 
   /// For the last Command: deviation at the end of a limb, by tip of the model, m; an angle counts
-  /// as its displacement at 0.3 m (ec_tip::arm). Valid until another function is called.
+  /// as its displacement at ec_tip::arm. And the angle of it by itself, rad. Valid until another
+  /// function is called.
   double tip_left_m(int tip) const noexcept;
+  double tip_left_rad(int tip) const noexcept;
 
   /// The same robot as input of the functions in core_correction.h.
   const ec_robot& robot() const noexcept { return robot_; }

@@ -9,7 +9,7 @@
 /* Rotations count as the displacement that they give at this distance, m. */
 #define EC_ARM 0.3
 /* The same for arms that have too few joints for place and attitude: the place comes first. */
-#define EC_ARM_OF_FEW 0.03
+#define EC_ARM_OF_FEW (0.1 * EC_ARM)
 /* Weights of staying near the reference posture and of a short step, against EC_ARM's metres. What
    the ends of the limbs do not determine (redundant arms) stays at the reference, and what they
    hardly determine (stretched arms and knees) moves little. */
@@ -114,7 +114,8 @@ static inline void ec_equations(const ec_robot* robot, int branch, const double*
 }
 
 /* One damped Gauss-Newton step of all branches: moves q so that the ends of the limbs come to the
-   targets in memory. Positions stay near `reference`. Returns the largest change. */
+   targets in memory. Positions stay near `reference`. Returns the largest change. What a coordinate
+   moves by less than EC_ARM a radian, or counts less (EC_ARM_OF_FEW, EC_SHORT), is damped less. */
 static inline double ec_step(const ec_robot* robot, const double* reference, double* q,
                              ec_memory* memory) {
   double largest = 0.0;
@@ -122,7 +123,11 @@ static inline double ec_step(const ec_robot* robot, const double* reference, dou
   for (branch = 0; branch < robot->branches; ++branch) {
     const int size = robot->branch_size[branch];
     ec_equations(robot, branch, reference, q, memory);
-    for (i = 0; i < size; ++i) memory->normal[(size + 1) * i] += EC_DAMP * EC_DAMP;
+    for (i = 0; i < size; ++i) {
+      double* square = &memory->normal[(size + 1) * i];
+      const double share = *square / (EC_ARM * EC_ARM);
+      *square += EC_DAMP * EC_DAMP * (share < 1.0 ? share : 1.0);
+    }
     ec_solve(size, memory->normal, memory->gradient);
     for (c = 0; c < robot->coordinates; ++c) {
       double change;

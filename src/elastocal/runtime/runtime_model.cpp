@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -21,6 +22,17 @@ int RootJoint(const RuntimeModel& model, int body) {
   return joint;
 }
 
+/// The coordinates that move the end of a limb.
+std::set<int> CoordinatesOf(const RuntimeModel& model, const ec_tip& tip) {
+  std::set<int> coordinates;
+  for (int body = tip.frame.body; body > 0;) {
+    const ec_joint& joint = model.calibrated[static_cast<std::size_t>(body - 1)];
+    coordinates.insert(joint.coordinate);
+    body = joint.parent;
+  }
+  return coordinates;
+}
+
 /// By which length the turns of the end of each limb count. Limbs of one branch that ask for more
 /// than their coordinates can give each miss some of it. Where feet are flat, and where a neck
 /// looks, must not suffer for that; of an arm, the place counts more.
@@ -30,25 +42,30 @@ void WeighTurns(int branches, RuntimeModel& model) {
   for (const ec_tip& tip : model.tips) {
     if (tip.yields != 0) continue;
     asked[static_cast<std::size_t>(tip.branch)] += 6;
-    for (int body = tip.frame.body; body > 0;) {
-      const ec_joint& joint = model.calibrated[static_cast<std::size_t>(body - 1)];
-      moving[static_cast<std::size_t>(tip.branch)].insert(joint.coordinate);
-      body = joint.parent;
-    }
+    moving[static_cast<std::size_t>(tip.branch)].merge(CoordinatesOf(model, tip));
   }
-  for (ec_tip& tip : model.tips) {
+  for (std::size_t t = 0; t < model.tips.size(); ++t) {
+    ec_tip& tip = model.tips[t];
     const auto branch = static_cast<std::size_t>(tip.branch);
-    tip.arm = tip.foot < 0 && IsArm(tip) && moving[branch].size() < asked[branch] ? EC_ARM_OF_FEW
-                                                                                  : EC_ARM;
+    const bool few = moving[branch].size() < asked[branch];
+    tip.arm = few && tip.foot < 0 && IsArm(model, t) ? EC_ARM_OF_FEW : EC_ARM;
   }
 }
 
 }  // namespace
 
-bool IsArm(const ec_tip& tip) {
-  constexpr int kFewestJoints = 4;
-  return tip.yields == 0 && tip.freedom >= kFewestJoints;
+bool IsArm(const RuntimeModel& model, std::size_t tip) {
+  constexpr std::size_t kFewest = 4;
+  if (model.tips[tip].yields != 0) return false;
+  std::set<int> own = CoordinatesOf(model, model.tips[tip]);
+  for (std::size_t t = 0; t < model.tips.size(); ++t) {
+    if (t == tip) continue;
+    for (int coordinate : CoordinatesOf(model, model.tips[t])) own.erase(coordinate);
+  }
+  return own.size() >= kFewest;
 }
+
+double DegreeAsMillimetres(double arm_m) { return 1e3 * arm_m * std::numbers::pi / 180.0; }
 
 RuntimeBranches FindBranches(RuntimeModel& model) {
   RuntimeBranches branches;
@@ -61,8 +78,8 @@ RuntimeBranches FindBranches(RuntimeModel& model) {
     tip.branch =
         branch_of_root.emplace(root, static_cast<int>(branch_of_root.size())).first->second;
     branches.branch_size.resize(branch_of_root.size(), 0);
-    tip.freedom = 0;
-    for (int body = tip.frame.body; body > 0; ++tip.freedom) {
+    tip.freedom = static_cast<int>(CoordinatesOf(model, tip).size());
+    for (int body = tip.frame.body; body > 0;) {
       const ec_joint& joint = model.calibrated[static_cast<std::size_t>(body - 1)];
       const auto coordinate = static_cast<std::size_t>(joint.coordinate);
       int& branch = branches.branch_of_coordinate[coordinate];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <iosfwd>
 #include <string>
@@ -50,9 +51,14 @@ struct RuntimeBranches {
 /// tip count, and finds the coordinates of each branch.
 RuntimeBranches FindBranches(RuntimeModel& model);
 
-/// Whether a limb can place its end. A limb of fewer joints only points (a neck), and so does one
-/// that yields. Call it after FindBranches.
-bool IsArm(const ec_tip& tip);
+/// Whether a limb can place its end by itself: by four coordinates or more that move the end of no
+/// other limb. A limb of fewer only points (a neck, also on a jointed trunk), and so does one that
+/// yields. Call it after FindBranches.
+bool IsArm(const RuntimeModel& model, std::size_t tip);
+
+/// The displacement, mm, as which a degree of attitude counts at the end of a limb whose turns
+/// count at `arm_m` (ec_tip::arm).
+double DegreeAsMillimetres(double arm_m);
 
 /// Write and read the file of a model. Reading throws std::runtime_error that names file, entry,
 /// what was found and what was expected, also for a model whose indices or sizes do not fit
