@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,7 @@
 #include "elastocal/screening/knocks.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/validation/model_comparison.hpp"
-#include "tests/standing_humanoid.hpp"
+#include "tests/slow_legs.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -175,55 +176,6 @@ TEST(Motion, AMotionThatRepeatsItselfTellsNoMoreThanOnce) {
   tally.Expect(0.85, 0.8);
 }
 
-/// A humanoid on one leg, then the other: 16 rests each, and then slowly from rest to rest, which
-/// is recorded ten times on each way. What the model does not know displaces and turns all but the
-/// standing foot: anew for each rest, a first-order process in time along the ways.
-struct SlowLegs {
-  StandingHumanoid robot{16};
-  Eigen::VectorXd truth = robot.DrawTruth(3);
-
-  SlowLegs() {
-    for (const std::size_t leg : {3u, 4u}) {
-      PlayedTrial slow = robot.trials[leg];
-      const Eigen::MatrixXd& rests = robot.trials[leg].q;
-      slow.trial.name += "_slow";
-      slow.trial.moments = true;
-      slow.q.resize(10 * (rests.rows() - 1), rests.cols());
-      for (Eigen::Index i = 0; i < slow.q.rows(); ++i) {
-        const double way = static_cast<double>(i % 10) / 10.0;
-        slow.q.row(i) = (1.0 - way) * rests.row(i / 10) + way * rests.row(i / 10 + 1);
-      }
-      robot.trials.push_back(slow);
-    }
-  }
-
-  Recording Record(std::uint64_t seed) const {
-    Recording recording = robot.Record(
-        truth, {.marker_sd = 5e-5, .torque_sensors = robot.project.torque_sensors, .seed = seed});
-    recording.time_s = Eigen::VectorXd::LinSpaced(recording.posture_count(), 0.0,
-                                                  (recording.posture_count() - 1) / kRate);
-    Random random(seed);
-    Vector6d error = random.NormalVector(6, kTied);  // m, rad
-    for (int i = 0; i < recording.posture_count(); ++i) {
-      const Trial& trial = recording.trials[recording.trial[i]];
-      if (trial.support.size() != 1) continue;
-      const double kept = trial.moments ? kCorrelation : 0.0;
-      error = kept * error + random.NormalVector(6, kTied * std::sqrt(1.0 - kept * kept));
-      const int foot = robot.model.tree.links[trial.support.front()].body;
-      const Eigen::Vector3d centre = recording.markers.block<1, 3>(i, 0).transpose();
-      for (int m = 0; m < robot.model.marker_count(); ++m) {
-        if (robot.model.tree.links[robot.model.markers[m].link].body == foot) continue;
-        const Eigen::Vector3d at = recording.markers.block<1, 3>(i, 3 * m).transpose();
-        recording.markers.block<1, 3>(i, 3 * m) +=
-            (error.head<3>() + error.tail<3>().cross(at - centre)).transpose();
-      }
-    }
-    return recording;
-  }
-
-  static constexpr double kTied = 0.3e-3;  // m, rad
-};
-
 // The pose of the waist is unknown in each moment, so that bodies share no error; what the
 // constraint of the standing foot leaves does.
 TEST(Motion, IntervalsOfLegsHoldTheTruthWhereTheConstraintErrsAsItsNeighbours) {
@@ -237,7 +189,7 @@ TEST(Motion, IntervalsOfLegsHoldTheTruthWhereTheConstraintErrsAsItsNeighbours) {
     const CalibrationResult result = estimate();
     ASSERT_EQ(result.noise.motion.size(), 3u);  // arms, and each leg
     for (const std::size_t leg : {1u, 2u}) {
-      EXPECT_NEAR(result.noise.motion[leg].waist.lag_one, kCorrelation, 0.08);
+      EXPECT_NEAR(result.noise.motion[leg].waist.lag_one, SlowLegs::kKept, 0.08);
       EXPECT_GT(result.noise.motion[leg].waist.samples_each, 10.0);
       EXPECT_EQ(result.noise.motion[leg].bodies.samples_each, 1.0);
     }
@@ -246,41 +198,6 @@ TEST(Motion, IntervalsOfLegsHoldTheTruthWhereTheConstraintErrsAsItsNeighbours) {
               OffsetsInside(legs.robot.model, legs.truth, estimate(), "leg_"));
   }
   tally.Expect(0.9, 0.8);
-}
-
-/// Only the ways of both legs. Each body but the standing foot is displaced by a model error (m)
-/// that hardly changes in a second; the cluster of the left shank also by `push`, from a moment on.
-Recording RecordWays(const SlowLegs& legs, double of_body, const Eigen::Vector3d& push,
-                     std::uint64_t seed) {
-  constexpr double kKept = 0.99;
-  constexpr int kPushed = 80;
-  StandingHumanoid robot = legs.robot;
-  robot.trials.erase(robot.trials.begin(), robot.trials.begin() + 5);
-  Recording recording = robot.Record(
-      legs.truth,
-      {.marker_sd = 5e-5, .torque_sensors = robot.project.torque_sensors, .seed = seed});
-  recording.time_s = Eigen::VectorXd::LinSpaced(recording.posture_count(), 0.0,
-                                                (recording.posture_count() - 1) / kRate);
-  Random random(seed);
-  const auto draw = [&](double sd) {
-    Eigen::Matrix3Xd all(3, robot.model.tree.body_count());
-    for (auto&& one : all.colwise()) one = random.NormalVector(3, sd);
-    return all;
-  };
-  Eigen::Matrix3Xd error = draw(of_body);
-  for (int i = 0; i < recording.posture_count(); ++i) {
-    error = kKept * error + draw(of_body * std::sqrt(1.0 - kKept * kKept));
-    const int trial = recording.trial[i];
-    const int foot = robot.model.tree.links[recording.trials[trial].support.front()].body;
-    for (int m = 0; m < robot.model.marker_count(); ++m) {
-      const int body = robot.model.tree.links[robot.model.markers[m].link].body;
-      if (body == foot) continue;
-      recording.markers.block<1, 3>(i, 3 * m) += error.col(body).transpose();
-      const bool pushed = i >= kPushed && robot.model.markers[m].name.starts_with("LSHANK");
-      if (pushed) recording.markers.block<1, 3>(i, 3 * m) += push;
-    }
-  }
-  return recording;
 }
 
 // Taken for independent, moments make knocks of what the model does not know.
@@ -310,50 +227,6 @@ TEST(Motion, ErrorsThatLastAreNoKnocks) {
   EXPECT_EQ(knocks[0].cluster, "LSHANK");
   EXPECT_NEAR(knocks[0].posture, 80, 2);
   EXPECT_NEAR(knocks[0].distance, 4e-3, 1e-3);
-}
-
-// Most moments of a long motion tell hardly more of waist and markers: a part of them tells noise
-// and markers, and few updates with all of them name what is wrong in any.
-TEST(Motion, FewUpdatesRefitMarkersToLongMotions) {
-  constexpr int kWrong = 200;  // a moment that is not in the part
-  SlowLegs legs;
-  for (PlayedTrial& trial : legs.robot.trials) {
-    if (!trial.trial.moments) continue;
-    const Eigen::MatrixXd ways = trial.q;
-    trial.q.resize(3 * ways.rows(), ways.cols());
-    for (Eigen::Index i = 0; i < trial.q.rows(); ++i) {
-      const double way = static_cast<double>(i % 3) / 3.0;
-      const Eigen::Index next = std::min(i / 3 + 1, ways.rows() - 1);
-      trial.q.row(i) = (1.0 - way) * ways.row(i / 3) + way * ways.row(next);
-    }
-  }
-  Recording recording = RecordWays(legs, 0.1e-3, Eigen::Vector3d::Zero(), 1);
-  ASSERT_EQ(recording.posture_count(), 900);
-  int wrong = 0;
-  while (!Seen(recording, kWrong, wrong)) ++wrong;
-  recording.markers(kWrong, 3 * wrong) += 20e-3;
-  std::map<std::string, double> joints;
-  for (int i = 0; i < legs.robot.model.parameter_count(); ++i) {
-    const Parameter& parameter = legs.robot.model.parameters[i];
-    if (!IsExternal(parameter.kind)) joints[parameter.name] = legs.truth[i];
-  }
-  const CalibrationResult refit =
-      RefitExternals(legs.robot.model, recording, legs.robot.base, {}, joints);
-  EXPECT_EQ(refit.termination, Termination::kConverged);
-  EXPECT_LT(refit.iterations, 25) << "175 where all moments tell the noise";
-  const auto named = [&](const Outlier& one) {
-    return one.posture == kWrong && one.marker == wrong;
-  };
-  EXPECT_TRUE(std::ranges::any_of(refit.outliers, named));
-  double off = 0.0, expected = 0.0;
-  for (int i = 0; i < refit.model.parameter_count(); ++i) {
-    if (refit.model.parameters[i].kind != ParameterKind::kMarker || !(refit.sd[i] > 0.0)) continue;
-    if (refit.status[i] != ParameterStatus::kEstimated) continue;
-    off += std::pow((refit.delta[i] - legs.truth[i]) / refit.sd[i], 2);
-    ++expected;
-  }
-  EXPECT_GT(expected, 50.0);
-  EXPECT_LT(std::sqrt(off / expected), 2.0) << "in standard deviations";
 }
 
 // What shares its error with a left-out moment is left out as well.

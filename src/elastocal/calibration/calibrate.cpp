@@ -12,6 +12,7 @@
 #include "elastocal/calibration/fit.hpp"
 #include "elastocal/calibration/registration.hpp"
 #include "elastocal/calibration/residuals.hpp"
+#include "elastocal/calibration/settled_outliers.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
@@ -20,13 +21,14 @@
 namespace elastocal {
 namespace {
 
-constexpr std::size_t kMaxVerdicts = 5;
 constexpr int kFewUpdates = 2;  // updates of the noise when only a start is needed
 // Updates of the noise where only waist and markers are estimated. The joints are then wrong, which
 // no noise describes, so that the noise would hardly come to rest.
 constexpr int kExternalUpdates = 15;
-constexpr int kMostMoments = 300;  // of motions, by which waist and markers are estimated first
-constexpr int kLastUpdates = 3;    // of the noise, once a part of the moments has told it
+constexpr int kMostMoments = 300;   // of motions, by which waist and markers are estimated first
+constexpr int kFewestMoments = 30;  // of them in each group, whose noise they tell
+constexpr int kMedianUpdates = 8;   // of the noise at most, once a part has told it
+constexpr int kLastUpdates = 3;     // of the noise without outliers
 
 bool IsEstimated(ParameterKind parameter, ModelKind kind) {
   if (IsExternal(parameter)) return true;
@@ -49,84 +51,6 @@ std::vector<int> OfKind(const ErrorModel& model, const BaseParameters& base, Mod
     if (IsEstimated(parameter, kind)) free.push_back(i);
   }
   return free;
-}
-
-Selection Without(const ErrorModel& model, const Recording& recording,
-                  const OutlierVerdict& verdict) {
-  ObservationMask markers = SeenMask(recording);
-  std::vector<char> tied(static_cast<std::size_t>(recording.posture_count()), 1);
-  for (const Outlier& outlier : verdict.markers) markers(outlier.posture, outlier.marker) = false;
-  for (const LooseFooting& footing : verdict.footings) tied[footing.posture] = 0;
-  return Select(model, recording, std::move(markers), std::move(tied));
-}
-
-/// Transfers weights to another selection, by posture and body. A body that took no part before has
-/// weight 1.
-RobustWeights WeightsIn(const Selection& after, const Selection& before,
-                        const RobustWeights& weights) {
-  if (weights.bodies.size() != before.bodies.size()) return {};
-  std::map<std::pair<int, int>, Weight> of;  // by posture and body
-  for (std::size_t b = 0; b < before.bodies.size(); ++b) {
-    const BodyObservation& body = before.bodies[b];
-    if (body.used) of.emplace(std::pair(body.posture, body.body), weights.bodies[b]);
-  }
-  RobustWeights result{{}, weights.ties};
-  for (const BodyObservation& body : after.bodies) {
-    const auto found = of.find({body.posture, body.body});
-    result.bodies.push_back(body.used && found != of.end() ? found->second : Weight());
-  }
-  return result;
-}
-
-bool Same(const OutlierVerdict& a, const OutlierVerdict& b) {
-  return std::equal(a.markers.begin(), a.markers.end(), b.markers.begin(), b.markers.end(),
-                    [](const Outlier& x, const Outlier& y) {
-                      return x.posture == y.posture && x.marker == y.marker;
-                    }) &&
-         std::equal(
-             a.footings.begin(), a.footings.end(), b.footings.begin(), b.footings.end(),
-             [](const LooseFooting& x, const LooseFooting& y) { return x.posture == y.posture; });
-}
-
-/// Adds to `into` the outliers and loose footings that only `others` names.
-void Join(OutlierVerdict& into, const OutlierVerdict& others) {
-  const auto add = [](auto& to, const auto& from, const auto& place) {
-    for (const auto& found : from) {
-      const auto at =
-          std::lower_bound(to.begin(), to.end(), found,
-                           [&](const auto& a, const auto& b) { return place(a) < place(b); });
-      if (at == to.end() || place(found) < place(*at)) to.insert(at, found);
-    }
-  };
-  add(into.markers, others.markers,
-      [](const Outlier& at) { return std::pair(at.posture, at.marker); });
-  add(into.footings, others.footings, [](const LooseFooting& at) { return at.posture; });
-}
-
-struct EquationCount {
-  Eigen::Index equations = 0;
-  /// Identifiable parameters that no earlier calibration tells, and six for each pose of waist or
-  /// footing.
-  Eigen::Index unknowns = 0;
-  bool enough() const { return equations >= unknowns; }
-};
-
-EquationCount CountEquations(const FitProblem& problem, const Placement& placement,
-                             const Selection& selection, const BaseParameters& base,
-                             const std::vector<int>& free) {
-  const EarlierPart earlier = PartOf(problem.options.earlier, problem.model, free);
-  EquationCount count{.equations = 3 * selection.markers.count()};
-  const Eigen::Index identifiable = std::count_if(free.begin(), free.end(), [&](int i) {
-    return std::binary_search(base.kept.begin(), base.kept.end(), i);
-  });
-  count.unknowns =
-      std::max<Eigen::Index>(0, identifiable - static_cast<Eigen::Index>(earlier.positions.size()));
-  for (int i = 0; i < static_cast<int>(placement.T_ref_waist.size()); ++i) {
-    count.unknowns += 6;
-    if (placement.footing[i] >= 0 && selection.tied[i] != 0) count.equations += 6;
-  }
-  count.unknowns += 6 * static_cast<Eigen::Index>(placement.footings.size());
-  return count;
 }
 
 /// Refuses a recording with fewer equations than identifiable unknowns, unless an earlier
@@ -197,56 +121,11 @@ void FillResult(const BaseParameters& base, const CalibrationOptions& options, F
   result.posterior = std::move(fit.posterior);
 }
 
-/// Judges outliers with the noise of single moments: correlations within motions are ignored.
-OutlierVerdict JudgeOutliers(const FitProblem& problem, const Selection& selection,
-                             const std::vector<int>& free, Fit fit) {
-  fit.noise.motion.clear();
-  return FindOutliers(problem, selection, free, fit, problem.options.outlier_probability);
-}
-
-/// Fits without the outliers of a verdict and judges anew, until the verdict no longer changes. An
-/// observation at the limit may be left out and taken back in turns; it then stays out. Where too
-/// few equations would be left, all observations are kept: so many cannot all be outliers, and the
-/// true cause is not known yet.
-OutlierVerdict SettleOutliers(const FitProblem& problem, const BaseParameters& base,
-                              const std::vector<int>& free, int updates, OutlierVerdict verdict,
-                              Selection& selection, Fit& fit, bool& too_many) {
-  const auto fit_to = [&](const OutlierVerdict& without) {
-    if (problem.options.outliers == OutlierPolicy::kRemove) {
-      Selection next = Without(problem.model, problem.recording, without);
-      too_many = !CountEquations(problem, fit.placement, next, base, free).enough();
-      if (too_many) next = SelectAll(problem.model, problem.recording);
-      fit.weights = WeightsIn(next, selection, fit.weights);
-      selection = std::move(next);
-    }
-    fit = FitParameters(problem, selection, free, fit, Robustness::kMoments, updates);
-  };
-  std::vector<OutlierVerdict> earlier;
-  for (;;) {
-    fit_to(verdict);
-    if (too_many) return verdict;
-    OutlierVerdict next = JudgeOutliers(problem, selection, free, fit);
-    if (problem.options.outliers == OutlierPolicy::kKeep || Same(next, verdict)) return next;
-    if (earlier.size() == kMaxVerdicts) {
-      fit.settled = false;
-      return verdict;  // the verdict with which the fit was made
-    }
-    if (std::any_of(earlier.begin(), earlier.end(),
-                    [&](const OutlierVerdict& before) { return Same(next, before); })) {
-      Join(next, verdict);
-      fit_to(next);
-      return next;
-    }
-    earlier.push_back(std::move(verdict));
-    verdict = std::move(next);
-  }
-}
-
 /// What a part of the recording tells of waist, markers and noise.
 struct ToldByPart {
   Eigen::VectorXd delta;
   Noise noise;  ///< by group of the whole recording
-  bool settled = true;
+  int iterations = 0;
   bool correlated = false;  ///< errors in motions, as far as they came to rest
 };
 
@@ -266,8 +145,10 @@ void EstimateAll(const FitProblem& problem, const BaseParameters& base,
   if (fixed != nullptr) {
     fit = FitParameters(problem, selection, free, fit, Robustness::kMoments, updates);
   } else {
-    fit = FitParameters(problem, selection, free, fit,
-                        told != nullptr ? Robustness::kMoments : Robustness::kMedians, updates);
+    // By medians also where the part has told the noise: squares of all moments would take for
+    // noise what is wrong throughout a motion.
+    fit = FitParameters(problem, selection, free, fit, Robustness::kMedians,
+                        told != nullptr ? kMedianUpdates : updates);
     verdict = JudgeOutliers(problem, selection, free, fit);
     verdict = SettleOutliers(problem, base, free, updates, std::move(verdict), selection, fit,
                              result.too_many_outliers);
@@ -288,7 +169,7 @@ void EstimateAll(const FitProblem& problem, const BaseParameters& base,
 }
 
 /// All steps of Calibrate. Parameters that are not estimated keep their value in `delta`. `told`,
-/// where it is given, takes the place of step 1 and of the medians.
+/// where it is given, takes the place of step 1.
 void Estimate(const ErrorModel& model, const Recording& recording, const BaseParameters& base,
               const CalibrationOptions& options, const Selection* fixed,
               const Eigen::VectorXd& delta, const ToldByPart* told, CalibrationResult& result) {
@@ -306,7 +187,7 @@ void Estimate(const ErrorModel& model, const Recording& recording, const BasePar
   const std::vector<int> free = OfKind(model, base, result.kind, waist_moves);
   if (told != nullptr) {
     start.noise = told->noise;
-    start.settled = told->settled;
+    start.iterations = told->iterations;
     EstimateAll(problem, base, free, fixed, told, start, result);
     return;
   }
@@ -323,7 +204,8 @@ std::optional<ToldByPart> TellByFewMoments(const ErrorModel& model, const Record
                                            const CalibrationOptions& options,
                                            const Selection* fixed, const Eigen::VectorXd& delta) {
   if (recording.trials.empty() || !HasPoseByPosture(recording)) return std::nullopt;
-  const std::vector<int> kept = ThinnedMotions(recording, kMostMoments);
+  const std::vector<int> groups = NoiseGroups(model, recording);
+  const std::vector<int> kept = ThinnedMotions(recording, kMostMoments, groups, kFewestMoments);
   if (2 * std::ssize(kept) > recording.posture_count()) return std::nullopt;
   const Recording part = SelectPostures(recording, kept);
   std::optional<Selection> of_part;
@@ -339,8 +221,7 @@ std::optional<ToldByPart> TellByFewMoments(const ErrorModel& model, const Record
   } catch (const InputError&) {  // too few equations
     return std::nullopt;
   }
-  const std::vector<int> groups = NoiseGroups(model, recording);
-  ToldByPart told{few.delta, {}, few.settled, !few.noise.motion.empty()};
+  ToldByPart told{few.delta, {}, few.iterations, !few.noise.motion.empty()};
   told.noise.sd.setConstant(1 + *std::ranges::max_element(groups), kNoiseSourceCount, kNaN);
   for (std::size_t k = 0; k < kept.size(); ++k) {
     told.noise.sd.row(groups[Size(kept[k])]) = few.noise.sd.row(few.group[k]);

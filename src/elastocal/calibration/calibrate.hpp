@@ -120,7 +120,8 @@ CalibrationResult Calibrate(const ErrorModel& model, const Recording& recording,
 /// parameter name [rad or m]. This applies a calibration to a recording of another day. Names that
 /// are no parameter of the model are ignored. The result is of kind kUncalibrated; its `delta`
 /// contains the joints' errors. In long motions, a part of the moments determines noise and
-/// markers; all moments then correct both, and are judged.
+/// markers; all moments then correct both, and are judged. `iterations` counts both fits, and
+/// `settled` is of the verdict on outliers among all moments.
 CalibrationResult RefitExternals(const ErrorModel& model, const Recording& recording,
                                  const BaseParameters& base, const CalibrationOptions& options,
                                  const std::map<std::string, double>& joint_errors,

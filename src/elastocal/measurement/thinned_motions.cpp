@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "elastocal/math/numbers.hpp"
@@ -25,16 +26,30 @@ bool Differ(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, int row) {
 }  // namespace
 
 std::vector<int> ThinnedMotions(const Recording& recording, int most) {
+  return ThinnedMotions(recording, most, std::vector<int>(recording.trial.size(), 0), 0);
+}
+
+std::vector<int> ThinnedMotions(const Recording& recording, int most, const std::vector<int>& group,
+                                int least) {
   const auto moves = [&](int i) {
     return recording.trials[Size(recording.trial[Size(i)])].of_motion();
   };
-  int moments = 0;
-  for (int i = 0; i < recording.posture_count(); ++i) moments += moves(i) ? 1 : 0;
-  const int step = StepOver(moments, most);
-  std::vector<int> kept;
-  int moment = 0;
+  std::map<int, int> moments;  // by group
+  int all = 0;
   for (int i = 0; i < recording.posture_count(); ++i) {
-    if (!moves(i) || moment++ % step == 0) kept.push_back(i);
+    if (!moves(i)) continue;
+    ++moments[group[Size(i)]];
+    ++all;
+  }
+  std::map<int, int> step;
+  for (const auto& [of, count] : moments) {
+    step[of] = std::clamp(count / std::max(1, least), 1, StepOver(all, most));
+  }
+  std::vector<int> kept;
+  std::map<int, int> moment;
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    const int of = group[Size(i)];
+    if (!moves(i) || moment[of]++ % step[of] == 0) kept.push_back(i);
   }
   return kept;
 }

@@ -12,6 +12,11 @@ namespace elastocal {
 /// moments tell as much.
 std::vector<int> ThinnedMotions(const Recording& recording, int most);
 
+/// The same, but at least `least` moments (or all) of each group of postures, so that there may be
+/// more than `most`. `group` has one number a posture, from 0 on.
+std::vector<int> ThinnedMotions(const Recording& recording, int most, const std::vector<int>& group,
+                                int least);
+
 /// The recording with these postures only. A posture table is thinned by EvenlyThinned.
 Recording WithThinnedMotions(const Recording& recording, int most);
 

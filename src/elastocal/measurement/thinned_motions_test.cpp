@@ -28,6 +28,17 @@ TEST(ThinnedMotions, KeepRestAndEvenlySoManyMoments) {
   EXPECT_EQ(WithThinnedMotions(RestAndMotion(50), 100).posture_count(), 60);
 }
 
+// A leg that moves little among much of the arms tells its noise by all that it has.
+TEST(ThinnedMotions, KeepEnoughOfEachGroup) {
+  const Recording recording = RestAndMotion(3000);
+  std::vector<int> group(3010, 0);
+  std::fill_n(group.begin() + 1000, 15, 1);
+  std::fill_n(group.begin() + 2000, 100, 2);
+  std::vector<int> kept(3, 0);
+  for (const int i : ThinnedMotions(recording, 300, group, 30)) ++kept[group[i]];
+  EXPECT_EQ(kept, (std::vector<int>{10 + 289, 15, 34}));  // of 2885, each tenth; each third of 100
+}
+
 // What a correction changes is in the sample, however little it is.
 TEST(ThinnedMotions, FewPosturesHoldWhatIsCorrected) {
   const Recording recorded = RestAndMotion(1000);

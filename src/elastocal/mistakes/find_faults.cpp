@@ -13,6 +13,7 @@
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/impossible_gears.hpp"
 #include "elastocal/mistakes/missed_springs.hpp"
+#include "elastocal/mistakes/placed_offset.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/recordings_apart.hpp"
 #include "elastocal/mistakes/spoiling_cluster.hpp"
@@ -339,8 +340,7 @@ class FaultsInTurn {
       if (!loose.empty()) return loose;
     }
     if (!found_->of_one_trial || !few_->complete || few_->placed) return {few_->text};
-    return {few_->text +
-            "; it may as well be off by the opposite in all other trials that show it"};
+    return {few_->text + kOrInAllOthers};
   }
 
   std::vector<std::string> OfFewRowsOrMarkers() const {

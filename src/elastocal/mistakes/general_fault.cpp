@@ -53,7 +53,8 @@ class FaultExplanation {
     if (complete_ && faults_.size() == 1) {
       const PlacedOffset offset = PlaceOffset(faults_.front(), general_);
       faults_.front() = offset.fault;
-      placed_ = offset.told;
+      placed_ = offset.told || offset.refuted;
+      refuted_ = offset.refuted;
     }
   }
 
@@ -66,7 +67,7 @@ class FaultExplanation {
     const bool single = faults_.size() == 1 && complete_;
     const std::string cluster = MovedCluster(single ? kClearlyBetter : kAsWell);
     if (!cluster.empty()) return cluster;
-    if (single) return Remedy(faults_.front());
+    if (single) return Remedy(faults_.front()) + (refuted_ ? kOrInAllOthers : "");
     const std::string together = SeveralJoints();
     if (!together.empty()) return together;
     std::string text;
@@ -358,7 +359,8 @@ class FaultExplanation {
   const Project& project_;
   std::vector<RecordingFault> faults_;
   bool complete_ = false;  ///< nothing is found beside the faults, and they explain the recording
-  bool placed_ = false;    ///< PlacedOffset::told
+  bool placed_ = false;    ///< held-out trials tell of PlacedOffset
+  bool refuted_ = false;   ///< PlacedOffset::refuted
   double left_ = 0.0;      ///< error of the last fit, m
 };
 

@@ -41,7 +41,9 @@ struct FaultsInWords {
   /// Rms distance of the markers from a robot that is fitted without the faults, m.
   double left = 0.0;
   std::vector<RecordingFault> faults = {};
-  bool placed = false;  ///< held-out trials tell in which trial the joint is off (PlaceOffset)
+  /// Held-out trials tell in which trial the joint is off, or that it need not be that one, which
+  /// the text then says (PlaceOffset).
+  bool placed = false;
 };
 
 /// Finds out whether the fault is the only one, and describes the result. The fault that explains

@@ -2,7 +2,9 @@
 #include "elastocal/mistakes/placed_offset.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
@@ -12,8 +14,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kPredictsBetter = 0.8;  // times the error on held-out trials: not by chance
-constexpr double kExplainsAsWell = 1.1;  // times the error on the trials of the estimate
+constexpr double kPredictsBetter = 0.8;       // times the error on held-out trials: not by chance
+constexpr double kExplainsAsWell = 1.1;       // times the error on the trials of the estimate
+constexpr std::size_t kMostOtherTrials = 12;  // other trials; each takes a fit
 
 /// The robot estimated without a fault, and what it leaves.
 struct WithoutOffset {
@@ -37,9 +40,11 @@ std::optional<RecordingFault> InAnotherTrial(const RecordingFault& fault, const 
                                              const GeneralFault& general) {
   std::optional<RecordingFault> found;
   double least = kExplainsAsWell * here.left;
-  for (int trial = 0; trial < std::ssize(general.recording.trials); ++trial) {
+  std::vector<int> others = AllTrialsThatMove(general.recording, fault.coordinate);
+  std::erase(others, fault.trial);
+  if (others.size() > kMostOtherTrials) others.resize(kMostOtherTrials);
+  for (const int trial : others) {
     const auto first = std::ranges::find(general.recording.trial, trial);
-    if (trial == fault.trial || first == general.recording.trial.end()) continue;
     RecordingFault other = fault;
     other.trial = trial;
     other.posture = static_cast<int>(first - general.recording.trial.begin());
@@ -75,7 +80,7 @@ PlacedOffset PlaceOffset(const RecordingFault& fault, const GeneralFault& genera
     if (*here.predicted < kPredictsBetter * *shifted) return {fault, true};
     if (!(*shifted < kPredictsBetter * *here.predicted)) return {fault};
     const auto other = InAnotherTrial(fault, here, general);
-    return other ? PlacedOffset{*other, true} : PlacedOffset{fault};
+    return other ? PlacedOffset{*other, true} : PlacedOffset{fault, false, true};
   } catch (const InputError&) {  // nothing is told
     return {fault};
   }

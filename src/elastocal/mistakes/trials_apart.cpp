@@ -5,14 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
-#include <span>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "elastocal/calibration/observations.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/collect_alike.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 
 namespace elastocal {
@@ -22,6 +22,7 @@ constexpr double kLeftApart = 0.5;       // ratio to the error of one robot
 constexpr double kLeastGain = 0.2e-3;    // m, less than that error
 constexpr double kMostOfSet = 3.0;       // ratio to the error of separate robots
 constexpr std::size_t kMostTrials = 50;  // each is fitted by itself
+constexpr int kFitsOfEach = 4;           // most fits of sets, times the number of trials
 
 double CountSeen(const Recording& recording, const std::vector<int>& postures) {
   double seen = 0.0;
@@ -61,12 +62,6 @@ double OfFreedom(const CalibrationResult& fit, const Recording& part) {
                        : std::numeric_limits<double>::infinity();
 }
 
-/// A set of trials, and the rms distance of their markers from one robot fitted to them, m.
-struct OneRobot {
-  std::vector<PartOfRecording> trials;
-  double error = 0.0;
-};
-
 /// Fits of the trials, separately and together.
 class TrialsTogether {
  public:
@@ -91,44 +86,30 @@ class TrialsTogether {
   double left() const { return left_; }
   double apart() const { return apart_; }
 
-  /// Sets of trials that one robot explains with an error below `most`, m. Each set takes all
-  /// trials that fit, in their order. The largest set comes first.
-  std::vector<OneRobot> Sets(double most) const {
-    std::vector<OneRobot> sets;
-    std::vector<std::size_t> open(trials_.size());
-    std::iota(open.begin(), open.end(), std::size_t{0});
-    while (!open.empty()) {
-      OneRobot set{{trials_[open.front()]}, errors_[open.front()]};
-      std::vector<std::size_t> others;
-      open.erase(open.begin());
-      if (!open.empty()) Extend(open, most, set, others);
-      sets.push_back(std::move(set));
-      open = others;
-    }
-    std::ranges::stable_sort(sets, [](const OneRobot& a, const OneRobot& b) {
-      return a.trials.size() > b.trials.size();
+  /// Sets of trials that one robot explains with an error below `most`, m, or none (CollectAlike).
+  std::optional<std::vector<AlikeSet>> Sets(double most) const {
+    const int most_fits = kFitsOfEach * static_cast<int>(trials_.size());
+    return CollectAlike(errors_, most, most_fits, [&](const std::vector<std::size_t>& set) {
+      std::vector<PartOfRecording> together;
+      for (const std::size_t k : set) together.push_back(trials_[k]);
+      return ErrorOf(together);
     });
-    return sets;
+  }
+
+  /// Names and error of each set.
+  std::string Describe(const std::vector<AlikeSet>& sets) const {
+    std::string said;
+    for (const AlikeSet& set : sets) {
+      std::string names;
+      for (const std::size_t k : set.elements)
+        names += (names.empty() ? "" : ", ") + trials_[k].name;
+      said += fmt::format("{}{} ({:.3g} mm)", said.empty() ? "" : "; another one ", names,
+                          1e3 * set.error);
+    }
+    return said;
   }
 
  private:
-  /// Adds the trials that the robot of the set explains as well: all at once or, where it does not,
-  /// halves of them, so that few foreign trials among many take few fits.
-  void Extend(std::span<const std::size_t> by, double most, OneRobot& set,
-              std::vector<std::size_t>& others) const {
-    std::vector<PartOfRecording> with = set.trials;
-    for (const std::size_t k : by) with.push_back(trials_[k]);
-    const double error = ErrorOf(with);
-    if (error < most) {
-      set = {std::move(with), error};
-    } else if (by.size() == 1) {
-      others.push_back(by.front());
-    } else {
-      Extend(by.first(by.size() / 2), most, set, others);
-      Extend(by.subspan(by.size() / 2), most, set, others);
-    }
-  }
-
   static std::vector<int> PosturesOf(const std::vector<PartOfRecording>& trials) {
     std::vector<int> postures;
     for (const PartOfRecording& trial : trials) {
@@ -155,12 +136,6 @@ class TrialsTogether {
   std::vector<double> errors_;  // error of each trial by itself
   double left_ = 0.0, apart_ = 0.0;
 };
-
-std::string NamesOf(const std::vector<PartOfRecording>& trials) {
-  std::string names;
-  for (const PartOfRecording& trial : trials) names += (names.empty() ? "" : ", ") + trial.name;
-  return names;
-}
 
 }  // namespace
 
@@ -196,19 +171,15 @@ std::optional<PartsApart> FindTrialsApart(const RecordedModel& robot, const Reco
   const TrialsTogether trials(robot, recording, together, options);
   const double left = std::min(most, trials.left());
   if (!AreApart(trials.apart(), left)) return std::nullopt;
-  const std::vector<OneRobot> sets =
+  const auto sets =
       trials.Sets(std::min(std::sqrt(trials.apart() * left), kMostOfSet * trials.apart()));
-  if (sets.size() < 2) return std::nullopt;
-  std::string explained;
-  for (std::size_t k = 0; k < sets.size(); ++k) {
-    explained += fmt::format("{}{} ({:.3g} mm)", k == 0 ? "" : "; another one ",
-                             NamesOf(sets[k].trials), 1e3 * sets[k].error);
-  }
+  if (sets && sets->size() < 2) return std::nullopt;
   const std::string said = fmt::format(
       "trials contradict each other: all together leave an error of {:.3g} mm, each by itself "
-      "{:.3g} mm. One robot explains {}. Are they of different robots or days, or was the robot "
+      "{:.3g} mm. {}. Are they of different robots or days, or was the robot "
       "changed in between? Leave the foreign ones out, or measure them again",
-      1e3 * trials.left(), 1e3 * trials.apart(), explained);
+      1e3 * trials.left(), 1e3 * trials.apart(),
+      sets ? "One robot explains " + trials.Describe(*sets) : "Few robots do not explain them");
   return PartsApart{said, trials.apart()};
 }
 

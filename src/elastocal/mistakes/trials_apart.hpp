@@ -43,13 +43,14 @@ bool AreApart(double error_apart, double error_together);
 /// that a trial exercises and no model describes seldom disappear in a separate fit, but an error
 /// that is constant throughout a trial does.
 ///
-/// Trials that one robot explains are then collected into sets: all at once or, where that fails,
-/// by halves. The error of a set must be less than the geometric mean of the error with separate
-/// robots and that with one robot, and less than three times the former. Nothing is returned if all
-/// trials form one set. Trials with too few equations are left out. Recordings with more than 50
-/// trials are not examined. `recording` is that of `together`. `most` is the error that another
-/// explanation of the recording leaves, m; where it is smaller, it replaces the error with one
-/// robot.
+/// Trials that one robot explains are then collected into sets (CollectAlike), by at most four
+/// times as many fits as there are trials. The error of a set must be less than the geometric mean
+/// of the error with separate robots and that with one robot, and less than three times the former.
+/// Nothing is returned if all trials form one set. Where the fits do not suffice, it is said that
+/// few robots do not explain the trials. Trials with too few equations are left out. Recordings
+/// with more than 50 trials are not examined. `recording` is that of `together`. `most` is the
+/// error that another explanation of the recording leaves, m; where it is smaller, it replaces the
+/// error with one robot.
 std::optional<PartsApart> FindTrialsApart(const RecordedModel& robot, const Recording& recording,
                                           const CalibrationResult& together, double most,
                                           const CalibrationOptions& options);
