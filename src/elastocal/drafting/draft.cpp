@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <set>
 #include <string>
 
@@ -194,7 +193,9 @@ void AddContacts(ProjectDraft& draft, const Semantics& semantics) {
   if (touching.empty()) return;
   constexpr std::size_t kNamed = 6;
   std::string names;
-  for (const auto& [a, b] : touching | std::views::take(kNamed)) {
+  std::size_t named = 0;
+  for (const auto& [a, b] : touching) {
+    if (++named > kNamed) break;
     names += (names.empty() ? "" : ", ") + draft.spheres[Size(a)].name + " and " +
              draft.spheres[Size(b)].name;
   }
