@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command `simulate`: a recording folder as a laboratory would fill it.
 
+#include <algorithm>
 #include <set>
+#include <sstream>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -58,6 +60,22 @@ TEST_F(Simulate, PlaysOneTrialWithTheOptionsGiven) {
   const auto json = nlohmann::json::parse(ReadFile(Folder("one.json")));
   ASSERT_EQ(json.at("trials").size(), 1u);
   EXPECT_EQ(json["trials"][0]["lag_s"], 4.0) << "the command line goes before the file";
+}
+
+TEST_F(Simulate, MeasuresThePlacesOfMarkersThatItIsTold) {
+  const auto table = [&](const std::string& folder, const std::string& of) {
+    const ProgramResult result = Run(folder, "--trials upper_random --marker-places-mm 1 " + of);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    std::istringstream lines(ReadFile(Folder(folder) + "/marker_places.csv"));
+    std::set<std::string> rows;
+    for (std::string line; std::getline(lines, line);) rows.insert(line);
+    return rows;
+  };
+  const std::set<std::string> all = table("all", ""),
+                              tool = table("tool", "--marker-places-of TOOL");
+  EXPECT_EQ(all.size(), 11u);  // a heading, three clusters, a marker by itself
+  EXPECT_EQ(tool.size(), 4u);
+  EXPECT_TRUE(std::includes(all.begin(), all.end(), tool.begin(), tool.end()));
 }
 
 TEST_F(Simulate, PlaysAUsersPosturesAndTrajectory) {
@@ -185,6 +203,8 @@ TEST_F(Simulate, RefusesWhatIsNotThere) {
   refused("--trials upper_sin", "did you mean 'upper_sine'");
   refused("--marker-noise-mm much", "--marker-noise-mm", 2);
   refused("--lost-marker NOSE", "NOSE");
+  refused("--marker-places-mm 1 --marker-places-of NOSE", "there is no cluster 'NOSE'");
+  refused("--marker-places-of NOSE", "--marker-places-mm", 2);
   refused("--free", "free");
   refused("--time-step-s 0.003", "hundredth");
   refused("--postures " + Folder("no.csv"), "no.csv");

@@ -22,13 +22,15 @@ PLACES = ("hands", "swinging_feet", "waist")
 def deploy(arguments, seed, work):
     """What deployment.json says of one robot, by (as, stabilised)."""
     recordings = []
+    measured = ["--marker-places-mm", "0.5", "--marker-places-of", *arguments.places_of] if arguments.places_of else []
     for kind in arguments.kinds:
         recordings.append(work / f"recording_{seed}_{kind}")
         words = [] if kind == "motion" else ["--kind", kind]
         run(arguments.program, "simulate", arguments.project, "--motion", arguments.demo / f"{kind}.csv", *words,
-            "-o", recordings[-1], "--seed", seed)
+            "-o", recordings[-1], "--seed", seed, *(measured if len(recordings) == 1 else []))
     result = work / f"calibration_{seed}"
-    run(arguments.program, "calibrate", arguments.project, "--recording", *recordings, "-o", result)
+    places = ["--marker-places", recordings[0] / "marker_places.csv"] if measured else []
+    run(arguments.program, "calibrate", arguments.project, "--recording", *recordings, "-o", result, *places)
     run(arguments.program, "simulate", arguments.project, "--deploy", result, "--motion", arguments.demo / "sine.csv",
         "-o", result, "--seed", seed, *(["--until-s", arguments.until_s] if arguments.until_s else []))
     executions = json.loads((result / "deployment.json").read_text())["executions"]
@@ -43,6 +45,8 @@ def main():
     parser.add_argument("--robots", type=int, default=5)
     parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--kinds", nargs="+", default=["motion", "sine", "random"], help="motions that are recorded")
+    parser.add_argument("--places-of", nargs="*", default=["LHAND", "RHAND", "LFOOT", "RFOOT", "WAIST"],
+                        help="clusters whose markers are measured on their links to 0.5 mm, as in the demo")
     parser.add_argument("--until-s", type=float, help="the robots execute the motion until then")
     parser.add_argument("--work", type=pathlib.Path)
     arguments = parser.parse_args()

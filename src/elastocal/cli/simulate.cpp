@@ -32,7 +32,7 @@ struct SimulateCommand {
   std::string project, output, trials = "all";
   std::string settings;
   std::string postures, motion, kind;  ///< for a motion that the user gives
-  std::vector<std::string> chains;
+  std::vector<std::string> chains, marker_places_of;
   int threads = 2, count = 0;
   std::string deploy;           ///< folder of a calibration that is used by controllers
   std::vector<std::string> as;  ///< knowledge of the controllers; empty: all kinds
@@ -74,6 +74,10 @@ SimulationOptions MakeOptions(const SimulateCommand& command, const Project& pro
   options.trials = command.trials;
   options.matched = command.matched;
   options.marker_places_sd = 1e-3 * command.marker_places_mm;
+  for (const std::string& name : command.marker_places_of) {
+    FindCluster(project, name);  // refused here if it is unknown
+    options.marker_places_of.push_back(name);
+  }
   if (command.postures.empty() && command.motion.empty()) return options;
   const std::string& file = command.motion.empty() ? command.postures : command.motion;
   options.motion =
@@ -320,11 +324,17 @@ void AddSimulate(CLI::App& app, Action& action) {
                    "Seed of the robot's errors, if another than --seed: the same robot, recorded "
                    "again with other postures and noise")
       ->check(IsSeed);
+  CLI::Option* places =
+      command
+          ->add_option("--marker-places-mm", options->marker_places_mm,
+                       "Also writes marker_places.csv for `calibrate --marker-places`: the places "
+                       "of the markers on their links, measured with this standard deviation, mm")
+          ->check(InBounds("simulate --marker-places-mm"));
   command
-      ->add_option("--marker-places-mm", options->marker_places_mm,
-                   "Also writes marker_places.csv for `calibrate --marker-places`: the places of "
-                   "the markers on their links, measured with this standard deviation, mm")
-      ->check(InBounds("simulate --marker-places-mm"));
+      ->add_option("--marker-places-of", options->marker_places_of,
+                   "Clusters whose markers are measured for it; default: all")
+      ->type_name("NAME")
+      ->needs(places);
   AddSettings(*command, *options);
   command->footer("Example: elastocal simulate models/talos/project.yaml -o recording");
   command->callback([&action, options] { action = [options] { return Simulate(*options); }; });

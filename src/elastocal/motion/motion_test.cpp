@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Balanced motions of a small biped, from the legs' kinematics to a whole set of postures.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -282,6 +283,27 @@ TEST_F(BalancedWalker, SwingsJointsToAndFro) {
     const auto column = planned.motion.q.col(c);
     EXPECT_GT(column.maxCoeff() - column.minCoeff(), 0.5);
   }
+}
+
+// A robot that is not calibrated has its feet lower than it knows, and would stumble.
+TEST_F(BalancedWalker, SwingsALiftedLegWellAboveTheFloor) {
+  PostureTour set{.name = "leg", .standing = {0}, .postures = {}};
+  set.sines = robot_.legs[1].coordinates();
+  const PlannedTour planned = PlanTour(robot_, set, {});
+  EXPECT_TRUE(planned.left_out.empty());
+  std::vector<double> heights;
+  for (Eigen::Index i = 0; i < planned.motion.q.rows(); ++i) {
+    const Eigen::VectorXd q = planned.motion.q.row(i).transpose();
+    const auto lowest = HeightsOverFloor(robot_.soles[1],
+                                         RootOverFeet(robot_, {0}, q) * robot_.legs[1].SolePose(q));
+    heights.push_back(*std::min_element(lowest.begin(), lowest.end()));
+  }
+  const double least = 0.025 * robot_.leg_length;
+  const auto high = [&](double height) { return height > least; };
+  const auto lifted = std::find_if(heights.begin(), heights.end(), high);
+  const auto landing = std::find_if(heights.rbegin(), heights.rend(), high).base();
+  ASSERT_GT(landing - lifted, 6 * 300);  // samples of the sines
+  EXPECT_GT(*std::min_element(lifted, landing), 0.98 * least);
 }
 
 TEST(SinesOfAMotion, AreFiniteForAJointWithoutLimits) {

@@ -23,26 +23,45 @@ Eigen::VectorXd ShareOfWay(Eigen::Index samples, Eigen::Index before, Eigen::Ind
   return progress;
 }
 
-/// Distances of the robot's own parts, then heights of the lowest points of swinging feet.
-Eigen::VectorXd DistancesAboveFloor(const StandingRobot& robot, const std::vector<int>& standing,
-                                    const Eigen::VectorXd& q) {
-  const Eigen::VectorXd apart = robot.clearances ? robot.clearances(q) : Eigen::VectorXd();
-  std::vector<double> heights;
+// Least height of a swinging foot between lifting and landing, as a share of the leg's length: feet
+// of a robot that is not calibrated were lower than planned by up to a fiftieth of it.
+constexpr double kLeastHeight = 0.025;
+
+/// Heights of the lowest points of a swinging foot, m.
+std::vector<double> HeightsOfFoot(const StandingRobot& robot, int foot,
+                                  const std::vector<int>& standing, const Eigen::VectorXd& q) {
+  const Transform T_world_sole =
+      RootOverFeet(robot, standing, q) * robot.legs[Size(foot)].SolePose(q);
+  return HeightsOverFloor(robot.soles[Size(foot)], T_world_sole);
+}
+
+std::vector<int> SwingingFeet(const StandingRobot& robot, const std::vector<int>& standing) {
+  std::vector<int> swinging;
   for (const int foot : robot.AllFeet()) {
     if (std::find(standing.begin(), standing.end(), foot) != standing.end()) continue;
-    const Transform T_world_sole =
-        RootOverFeet(robot, standing, q) * robot.legs[Size(foot)].SolePose(q);
-    const auto lowest = HeightsOverFloor(robot.soles[Size(foot)], T_world_sole);
+    swinging.push_back(foot);
+  }
+  return swinging;
+}
+
+/// Distances of the robot's own parts, then heights of the lowest points of swinging feet, scaled
+/// so that the least height counts as the distance that parts are to have.
+Eigen::VectorXd DistancesAboveFloor(const StandingRobot& robot, const std::vector<int>& standing,
+                                    double wanted, const Eigen::VectorXd& q) {
+  const Eigen::VectorXd apart = robot.clearances ? robot.clearances(q) : Eigen::VectorXd();
+  std::vector<double> heights;
+  for (const int foot : SwingingFeet(robot, standing)) {
+    const std::vector<double> lowest = HeightsOfFoot(robot, foot, standing, q);
     heights.insert(heights.end(), lowest.begin(), lowest.end());
   }
   Eigen::VectorXd all(apart.size() + static_cast<Eigen::Index>(heights.size()));
   all.head(apart.size()) = apart;
-  std::copy(heights.begin(), heights.end(), all.data() + apart.size());
+  const double scale = wanted / (kLeastHeight * robot.leg_length);
+  std::transform(heights.begin(), heights.end(), all.data() + apart.size(),
+                 [&](double height) { return scale * height; });
   return all;
 }
 
-// Least height of a swinging foot in a posture, as a share of the leg's length.
-constexpr double kLeastHeight = 0.025;
 constexpr double kEnds = 0.5;  // s, hold at either end, in which the root link starts and stops
 
 }  // namespace
@@ -271,7 +290,7 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Move(const PlacedPosture& from, cons
   const Clearances apart = [&](const Eigen::VectorXd& q) {
     PlacedPosture pose{q, from.T_world_root};
     if (turns_root && !PlaceFeet(robot_, standing, pose)) pose.q = q;
-    return DistancesAboveFloor(robot_, standing, pose.q);
+    return DistancesAboveFloor(robot_, standing, options_.path.clearance, pose.q);
   };
   JointPath path = PlanJointPath(robot_, apart, from.q, to.q, moving, options_.path);
   for (int i = 0; i <= options_.slower; ++i, path.duration_s *= kSlower) {
@@ -306,6 +325,27 @@ Eigen::MatrixXd MoveBuilder::SineWay(const Eigen::VectorXd& q, int coordinate, d
     way(i, coordinate) += in * out * (centre - q[coordinate] + amplitude * std::sin(omega * time));
   }
   return way;
+}
+
+std::optional<Eigen::MatrixXd> MoveBuilder::Sine(const PlacedPosture& at,
+                                                 const std::vector<int>& standing, int coordinate,
+                                                 double share, Refusal& why) const {
+  const Eigen::MatrixXd way = SineWay(at.q, coordinate, share);
+  if (standing.empty()) return Follow(at, at, standing, way, why);
+  for (const int foot : SwingingFeet(robot_, standing)) {
+    const auto height = [&](const Eigen::VectorXd& q) {
+      const std::vector<double> heights = HeightsOfFoot(robot_, foot, standing, q);
+      return *std::min_element(heights.begin(), heights.end());
+    };
+    const double least = std::min(kLeastHeight * robot_.leg_length, height(at.q));
+    for (Eigen::Index i = 0; i < way.rows(); ++i) {
+      const double there = height(way.row(i).transpose());
+      if (there >= least) continue;
+      why = {Constraint::kFloor, there, foot};
+      return std::nullopt;
+    }
+  }
+  return Follow(at, at, standing, way, why);
 }
 
 std::optional<Eigen::MatrixXd> MoveBuilder::Shift(const PlacedPosture& from,

@@ -61,9 +61,11 @@ class MoveBuilder {
                                         const std::vector<int>& standing,
                                         const Eigen::MatrixXd& way, Refusal& why) const;
 
-  /// A sine of one coordinate around the middle of its range, from `q` and back to it. Its
-  /// amplitude is at most the given share of the range and keeps the velocity limit.
-  Eigen::MatrixXd SineWay(const Eigen::VectorXd& q, int coordinate, double share) const;
+  /// Motion in which one coordinate swings in a sine about the middle of its range, from a posture
+  /// and back to it. Its amplitude is at most the given share of the range and keeps the velocity
+  /// limit. Swinging feet stay as high above the floor as in postures.
+  std::optional<Eigen::MatrixXd> Sine(const PlacedPosture& at, const std::vector<int>& standing,
+                                      int coordinate, double share, Refusal& why) const;
 
   /// Motion that shifts the weight from all feet to some of them.
   std::optional<Eigen::MatrixXd> Shift(const PlacedPosture& from, const PlacedPosture& to,
@@ -78,6 +80,7 @@ class MoveBuilder {
   Eigen::Index SamplesOf(double seconds) const;
 
  private:
+  Eigen::MatrixXd SineWay(const Eigen::VectorXd& q, int coordinate, double share) const;
   /// Samples of the zero-moment point that lead from its place at rest in one posture to that in
   /// the other.
   Eigen::MatrixX2d ZmpWay(const PlacedPosture& from, const PlacedPosture& to,

@@ -226,8 +226,7 @@ class TourPlanner {
     Refusal why;
     double share = options_.sine.share;
     while (share >= options_.sine.least_share) {
-      const auto sine =
-          build_.Follow(hub_, hub_, set_.standing, build_.SineWay(hub_.q, coordinate, share), why);
+      const auto sine = build_.Sine(hub_, set_.standing, coordinate, share, why);
       if (sine) {
         rows_.Add(*sine, set_.standing);
         return;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "elastocal/identifiability/base_parameters.hpp"
@@ -113,12 +115,29 @@ void SeeBars(const std::vector<ReferenceLength>& references,
 }
 
 /// Positions of the markers on the links of the true robot, measured with noise.
-std::vector<MarkerMeasurement> MeasurePlaces(const std::vector<Marker>& markers, double sd,
+/// Names of the markers of some clusters.
+std::set<std::string> MarkersOfClusters(const Project& project,
+                                        const std::vector<std::string>& clusters) {
+  std::set<std::string> markers;
+  for (const MarkerCluster& cluster : project.clusters) {
+    const auto found = std::find(clusters.begin(), clusters.end(), cluster.name);
+    if (found == clusters.end()) continue;
+    for (const int marker : cluster.markers) markers.insert(project.markers[Size(marker)].name);
+  }
+  return markers;
+}
+
+/// Measures the places of some markers, of all if none is named. What is drawn for a marker does
+/// not depend on which others are measured.
+std::vector<MarkerMeasurement> MeasurePlaces(const std::vector<Marker>& markers,
+                                             const std::set<std::string>& measured, double sd,
                                              std::uint64_t seed) {
   Random random(seed ^ 0x91ace);
   std::vector<MarkerMeasurement> places;
   for (const Marker& marker : markers) {
-    places.push_back({marker.name, marker.p_link_marker + random.NormalVector(3, sd), sd});
+    const Eigen::Vector3d place = marker.p_link_marker + random.NormalVector(3, sd);
+    if (measured.empty() || measured.count(marker.name) > 0)
+      places.push_back({marker.name, place, sd});
   }
   return places;
 }
@@ -208,8 +227,9 @@ Simulation PrepareSimulation(const Project& project, const SimulationOptions& op
   }
   simulation.bars = DrawBars(project.recording.reference_lengths, settings.seed);
   if (options.marker_places_sd > 0.0) {
-    simulation.marker_places =
-        MeasurePlaces(simulation.experiment.robot.markers, options.marker_places_sd, settings.seed);
+    simulation.marker_places = MeasurePlaces(simulation.experiment.robot.markers,
+                                             MarkersOfClusters(project, options.marker_places_of),
+                                             options.marker_places_sd, settings.seed);
   }
   return simulation;
 }

@@ -30,6 +30,7 @@ struct SimulationOptions {
   /// Standard deviation with which marker positions on their links are measured, m; 0: they are not
   /// measured.
   double marker_places_sd = 0.0;
+  std::vector<std::string> marker_places_of = {};  ///< clusters measured; empty: all markers
   int threads = 2;  ///< trials that are played at the same time; the result does not depend on it
 };
 

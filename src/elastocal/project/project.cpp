@@ -95,6 +95,20 @@ void ReadSettings(const YamlValue& root, Project& project) {
   CarryRest(project);
 }
 
+/// Index of a named item of the project. Throws InputError, which proposes a similar name.
+template <typename Item>
+int FindNamed(const std::vector<Item>& items, const std::string& kind, const Project& project,
+              const std::string& name) {
+  std::vector<std::string> known;
+  for (const Item& item : items) known.push_back(item.name);
+  const auto found = std::find(known.begin(), known.end(), name);
+  if (found == known.end()) {
+    throw InputError("there is no " + kind + " " + Quote(name) + " in " + project.file.string() +
+                     DidYouMean(name.substr(0, 60), known));
+  }
+  return static_cast<int>(found - known.begin());
+}
+
 }  // namespace
 
 void CheckFileName(const YamlValue& name) {
@@ -137,14 +151,11 @@ int ChainNamedBy(const YamlValue& value, const Project& project) {
 }
 
 int FindChain(const Project& project, const std::string& name) {
-  std::vector<std::string> known;
-  for (const Chain& chain : project.chains) known.push_back(chain.name);
-  const auto found = std::find(known.begin(), known.end(), name);
-  if (found == known.end()) {
-    throw InputError("there is no chain " + Quote(name) + " in " + project.file.string() +
-                     DidYouMean(name.substr(0, 60), known));
-  }
-  return static_cast<int>(found - known.begin());
+  return FindNamed(project.chains, "chain", project, name);
+}
+
+int FindCluster(const Project& project, const std::string& name) {
+  return FindNamed(project.clusters, "cluster", project, name);
 }
 
 Project ReadProject(const std::filesystem::path& file) {

@@ -159,6 +159,9 @@ void CheckHasNoLinkages(const Project& project, const std::string& what);
 /// one.
 int FindChain(const Project& project, const std::string& name);
 
+/// Index of a cluster of markers. Throws InputError for an unknown one.
+int FindCluster(const Project& project, const std::string& name);
+
 /// Markers carried by the links of a chain, beyond its `from` link up to and including its tip.
 std::vector<std::string> ChainMarkers(const Project& project, const Chain& chain);
 
