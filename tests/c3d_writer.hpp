@@ -13,7 +13,7 @@ namespace elastocal {
 
 // Recordings in the formats of others, for tests: written byte by byte from their descriptions.
 
-/// How a C3D file is written.
+/// Options for writing a C3D file.
 struct C3dStyle {
   int processor = 84;  ///< 84 Intel, 85 DEC, 86 MIPS
   bool real = true;
@@ -77,7 +77,7 @@ class C3dWriter {
   std::string Group(int id, const std::string& name) const {
     return Byte(static_cast<int>(name.size())) + Byte(-id) + name + Integer(3) + Byte(0);
   }
-  /// `values`: type, dimensions and data.
+  /// Writes a parameter, whose `values` are type, dimensions and data.
   std::string Parameter(int id, const std::string& name, const std::string& values) const {
     return Byte(static_cast<int>(name.size())) + Byte(id) + name +
            Integer(static_cast<int>(values.size()) + 3) + values + Byte(0);
@@ -112,7 +112,7 @@ class C3dWriter {
     std::string text{'\1', '\x50', '\2', static_cast<char>(style_.processor)};
     const bool wrapped = style_.counted_by == "wrapped";
     const std::size_t counted = wrapped ? frames % 65536 : std::min<std::size_t>(frames, 65535);
-    text += Number(1, "FRAMES", static_cast<int>(counted));  // parameters may stand above the group
+    text += Number(1, "FRAMES", static_cast<int>(counted));  // parameters may precede their group
     text += Group(1, "POINT");
     text += Number(1, "USED", markers_.marker_count());
     text += RealNumber(1, "SCALE", style_.real ? -1.0f : static_cast<float>(style_.integer_scale));
