@@ -31,12 +31,12 @@ struct PyCalibration {
   bool deployable;
   std::string status;
   Names objections, warnings;
-  double urdf_rmse;      ///< m, on the fit; NaN without markers
-  double held_out_rmse;  ///< m, of the same URDF; NaN where nothing was held out
+  double urdf_rmse;      ///< m, in the fit; NaN without markers
+  double held_out_rmse;  ///< m, of the same URDF; NaN if nothing was held out
   CalibrationResult result;
   std::map<std::string, std::string> files;
   RunRecord record = {};                ///< for runs.json; `command_line` is made when saved
-  std::vector<std::string> words = {};  ///< of a command line that gives the same
+  std::vector<std::string> words = {};  ///< command line with the same result
 };
 
 /// The arguments of calibrate().

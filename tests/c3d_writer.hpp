@@ -18,9 +18,9 @@ struct C3dStyle {
   int processor = 84;  ///< 84 Intel, 85 DEC, 86 MIPS
   bool real = true;
   double integer_scale = 0.1;  ///< mm
-  int analog = 0;              ///< analogue numbers a frame
+  int analog = 0;              ///< analogue numbers in each frame
   std::string units = "mm", y_screen = "+Z";
-  double metres = 1e-3;                  ///< in a unit
+  double metres = 1e-3;                  ///< metres per unit
   std::size_t labels_a_list = 255;       ///< the rest goes into LABELS2
   std::vector<std::string> angles = {};  ///< labels that are in POINT:ANGLES as well
   std::string counted_by = "FRAMES";     ///< or "TRIAL", "LONG_FRAMES", "wrapped"

@@ -34,7 +34,7 @@ struct Injected {
   const char* cause;
   const char* parameter;
   double size;
-  bool soft = false;  ///< of a robot whose springs are soft, and whose masses are known
+  bool soft = false;  ///< the robot has soft springs and known masses
 };
 
 // The joint turns far, has a long lever, and bears loads of both signs.
@@ -142,11 +142,11 @@ double InjectedEffect(const Injected& injected, const CausePicture& picture, dou
 
 /// Deviations of the pictures from the injected cause, over all robots that have it.
 struct PictureErrors {
-  double squares = 0.0;  ///< of dots, in standard deviations
-  double off = 0.0;      ///< squares of dots, and of what the cause does there
+  double squares = 0.0;  ///< of the dots' errors, in standard deviations
+  double off = 0.0;      ///< squares of the dots' errors; `effect`: of the cause there
   double effect = 0.0;
   double count = 0.0;
-  double curve_off = 0.0;  ///< squares of the ends of curves
+  double curve_off = 0.0;  ///< squares of the errors of the curves' ends
   double ends = 0.0;
 };
 

@@ -52,7 +52,7 @@ class KnownArm : public InventedArm {
   struct CalibratedArm {
     std::uint64_t seed;
     Eigen::VectorXd truth;
-    EarlierEstimate earlier;  ///< by thirty postures
+    EarlierEstimate earlier;  ///< from thirty postures
   };
   CalibratedArm Calibrated(int robot) const {
     const auto seed = 10 * static_cast<std::uint64_t>(robot);

@@ -86,7 +86,7 @@ class Program : public ::testing::Test {
   ScratchFolder scratch_;
   const Project arm_ = ReadProject(SourceFile(kProject));
   const ErrorModel model_ = MakeErrorModel(arm_.tree, arm_.markers, arm_.placement);
-  Eigen::VectorXd truth_;  ///< of the recording
+  Eigen::VectorXd truth_;  ///< truth of the recording
   std::string project_, recording_, out_;
 };
 

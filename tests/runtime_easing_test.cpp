@@ -20,8 +20,8 @@ constexpr double kCalls = 3.0;
 constexpr double kMostChange = EC_GENTLE * kSpeed / kCalls;  // largest change of the pace
 
 struct Eased {
-  double change_of_pace = 0.0;  ///< largest, of a correction from one call to the next
-  double change = 0.0;          ///< largest, of a command
+  double change_of_pace = 0.0;  ///< largest of a correction between calls
+  double change = 0.0;          ///< largest of a command
   std::vector<double> residual_m;
   Eigen::VectorXd last;
   unsigned status = 0;

@@ -27,8 +27,8 @@ std::vector<Eigen::VectorXd> Knees(double from, double to) {
 }
 
 struct Played {
-  double largest_change = 0.0;     ///< of a joint's command from one sample to the next
-  std::vector<double> residual_m;  ///< by sample
+  double largest_change = 0.0;     ///< of a joint's command between samples
+  std::vector<double> residual_m;  ///< for each sample
   std::vector<double> residual_rad;
   unsigned status = 0;
 };

@@ -26,15 +26,15 @@ inline MarkedRobot MarkedTalosLeg() {
 /// Options for playing a trial in tests, with kinematics, clocks and noise. The virtual experiment,
 /// which uses another engine, tests the rest.
 struct PlayOptions {
-  int postures = 24;  ///< random ones within `range` of the limits about their middle
+  int postures = 24;  ///< random, within the share `range` of the limits
   double range = 0.5;
-  double move_s = 3.5;  ///< by a minimum-jerk motion
+  double move_s = 3.5;  ///< duration of a minimum-jerk motion
   double rest_s = 1.5;
   double lag_s = 0.0;  ///< robot time = (1 + 1e-6 drift_ppm) camera time - lag_s
   double drift_ppm = 0.0;
   double frame_rate_hz = 100.0;
   double log_rate_hz = 200.0;
-  double marker_sd = 0.2e-3;    ///< of a coordinate, m
+  double marker_sd = 0.2e-3;    ///< m, noise of a coordinate
   double torque_sd = 0.1;       ///< N.m
   int standing = 0;             ///< the link that does not move
   bool one_by_one = false;      ///< joints move one after the other, the last ones first
@@ -46,8 +46,8 @@ struct PlayOptions {
 struct ScriptedTrial {
   MarkerTrajectories markers;
   JointLog log;
-  Eigen::MatrixXd q;             ///< postures x coordinates, as they were held
-  Eigen::VectorXd rest_begin_s;  ///< of the cameras' clock
+  Eigen::MatrixXd q;             ///< held postures x coordinates
+  Eigen::VectorXd rest_begin_s;  ///< by the cameras' clock
 };
 
 /// Torques may be any smooth function of the posture.
