@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The calibration of examples/talos_left_arm: how long the estimate takes, and how much of that the
-// analytic Jacobian saves against differences.
+// Time of the calibration of examples/talos_left_arm, and of its analytic Jacobian compared with
+// differences.
 #include <filesystem>
 #include <map>
 #include <numeric>
@@ -27,8 +27,8 @@ struct Experiment {
   Recording recording;
 };
 
-/// Where the real recording is absent, one of its shape: as many postures of the same robot, errors
-/// as large as the prior expects.
+/// Replaces the real recording if it is absent: as many postures of the same robot, with errors
+/// drawn from the prior.
 Recording GenerateRecording(const ErrorModel& model, const BaseParameters& base,
                             const Prior& prior) {
   std::map<ParameterKind, double> sd;
@@ -55,7 +55,7 @@ Experiment OpenExperiment(benchmark::State& state) {
   return experiment;
 }
 
-/// The whole estimate: registration, robust fit, verdict on outliers, noise and prior, covariance.
+/// The whole estimate: registration, robust fit, decision on outliers, noise and prior, covariance.
 void EstimateGeometric(benchmark::State& state) {
   const Experiment e = OpenExperiment(state);
   std::vector<double> seconds;
@@ -71,8 +71,8 @@ void EstimateGeometric(benchmark::State& state) {
 }
 BENCHMARK(EstimateGeometric)->Unit(benchmark::kMillisecond);
 
-/// The analytic derivatives of all residuals by all unknowns, against central differences of the
-/// same residuals.
+/// The analytic derivatives of all residuals with respect to all unknowns, compared with central
+/// differences.
 void LineariseAgainstDifferences(benchmark::State& state) {
   const Experiment e = OpenExperiment(state);
   const FitProblem problem{e.model, e.recording, e.project.calibration,

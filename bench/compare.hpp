@@ -11,15 +11,15 @@
 
 namespace elastocal {
 
-/// Seconds of this thread's processor: on a shared machine a clock on the wall would count the
-/// others' work too, and the more of it the longer a piece of work is.
+/// Processor seconds of this thread. On a shared machine, wall-clock time includes the work of
+/// others, the more the longer the work takes.
 inline double ProcessorSeconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Seconds that `work` takes on this thread.
+/// Processor seconds that `work` takes on this thread.
 template <typename Work>
 double TimeOnce(const Work& work) {
   const double start = ProcessorSeconds();
@@ -31,9 +31,9 @@ inline double MedianOf(const std::vector<double>& seconds) {
   return Median(Eigen::VectorXd::Map(seconds.data(), static_cast<Eigen::Index>(seconds.size())));
 }
 
-/// Runs two ways of doing the same in turns, so that whatever else the machine does at the time
-/// slows both, and reports the median seconds of each, divided by `count` (of postures in one run),
-/// and how many times faster `ours` is. The columns Time and CPU are of both together.
+/// Runs two implementations of the same work in turns, so that other work on the machine slows
+/// both. Reports the median seconds of each, divided by `count` (of postures in one run), and how
+/// many times faster `ours` is. The columns Time and CPU are the sums of both.
 template <typename Ours, typename Theirs>
 void CompareInTurns(benchmark::State& state, double count, const Ours& ours, const Theirs& theirs) {
   std::vector<double> our_seconds, their_seconds;

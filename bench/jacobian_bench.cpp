@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The generalized Jacobian (eq. 4) against central differences and against MuJoCo. Seconds a
-// posture; every pair is measured in one run, in turns.
+// Compares the generalized Jacobian (eq. 4) with central differences and with MuJoCo. Times are
+// seconds per posture, and both of a pair are measured in turns in one run.
 #include <cstring>
 #include <functional>
 #include <string>
@@ -32,7 +32,7 @@ ErrorModel WholeBody(const Project& project) {
   return MakeErrorModel(project.tree, project.markers, project.placement);
 }
 
-/// The left leg: 6 joints, 9 markers.
+/// The left leg, with 6 joints and 9 markers.
 ErrorModel Leg(const Project& project) {
   for (const Chain& chain : project.chains) {
     if (chain.name != "leg_left") continue;
@@ -53,8 +53,9 @@ void EvaluateAll(GeneralizedJacobian& jacobian, const Geometry& geometry,
   }
 }
 
-/// Central differences of the same positions by every parameter, two evaluations a column. The
-/// changed geometry is made once a column and serves all postures, as the analytic Jacobian's does.
+/// Central differences of the same positions with respect to every parameter: two evaluations for
+/// each column. The changed geometry is made once for each column and serves all postures, as for
+/// the analytic Jacobian.
 void CentralDifferences(const ErrorModel& model, const std::vector<Eigen::VectorXd>& postures) {
   constexpr double kStep = 1e-6;
   Eigen::VectorXd delta = NominalErrors(model);
@@ -101,7 +102,7 @@ void LegAgainstCentralDifferencesOfManyPostures(benchmark::State& state) {
 BENCHMARK(LegAgainstCentralDifferencesOfManyPostures);
 
 /// MuJoCo's point Jacobians: kinematics as mj_jac needs them, then a call for each marker. They
-/// have columns of joint positions only, ours have every column.
+/// have only the columns of joint positions, while ours have all columns.
 class MujocoJacobians {
  public:
   MujocoJacobians(const Project& project, const std::vector<Eigen::VectorXd>& postures)
@@ -138,9 +139,9 @@ class MujocoJacobians {
 
  private:
   MujocoOracle mujoco_;
-  std::vector<int> bodies_;               // by marker
-  std::vector<Eigen::VectorXd> qpos_;     // by posture
-  std::vector<Eigen::Matrix3Xd> points_;  // by posture
+  std::vector<int> bodies_;               // for each marker
+  std::vector<Eigen::VectorXd> qpos_;     // for each posture
+  std::vector<Eigen::Matrix3Xd> points_;  // for each posture
   Eigen::VectorXd jacobian_;
 };
 

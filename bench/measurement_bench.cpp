@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From raw files to samples: what a recording of ten minutes costs, and half and a quarter of it.
-// Times are of the wall clock, as reading uses two threads.
+// Time from raw files to samples for a recording of ten minutes, and for half and a quarter of it.
+// Times are wall-clock times, because reading uses two threads.
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -34,7 +34,7 @@ const Project& Talos() {
   return project;
 }
 
-/// A trial of all chains with postures 5 s apart at 100 Hz: 63 markers, 30 joints, 24 torques.
+/// A trial of all chains at 100 Hz with a posture every 5 s: 63 markers, 30 joints, 24 torques.
 struct Played {
   explicit Played(int frames) {
     PlayOptions options{.postures = frames / 500, .lag_s = 4.0, .drift_ppm = 20.0};
@@ -92,7 +92,7 @@ void ReadJoints(benchmark::State& state) {
   CountMegabytes(state, file);
 }
 
-/// The steps of SampleTrial one by one, on markers and log in memory.
+/// The steps of SampleTrial one by one, with markers and log in memory.
 void CorrectTheLabels(benchmark::State& state) {
   const Played& played = Recorded(state);
   const MarkedRobot robot = MakeMarkedRobot(Talos());
@@ -149,7 +149,7 @@ void SampleTheTrial(benchmark::State& state) {
   }
 }
 
-/// All of it, from files.
+/// All steps, from files.
 void ReadFolder(benchmark::State& state) {
   const Played& played = Recorded(state);
   for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Planning of motions: time against the number of postures, with the seconds of motion beside it.
+// Planning motions: time for several numbers of postures, and the duration of the motion.
 #include <benchmark/benchmark.h>
 
 #include "elastocal/motion/plan.hpp"
@@ -24,7 +24,7 @@ std::unique_ptr<StandingRobot> StandTalos(const Project& project) {
   return robot;
 }
 
-/// Random postures of an arm and of a leg, as many of each.
+/// As many random postures of an arm as of a leg.
 void PlanPostures(benchmark::State& state) {
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   const auto robot = StandTalos(project);

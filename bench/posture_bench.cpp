@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibration postures of a leg with all constraints: what NOCP costs and reaches (counter O1), and
-// what exchange from a pool of random postures does in the same run. One thread each.
+// Calibration postures of a leg with all constraints: time and result (counter O1) of NOCP, and of
+// exchange from a pool of random postures in the same run. Each uses one thread.
 #include <algorithm>
 
 #include <benchmark/benchmark.h>
@@ -34,7 +34,7 @@ struct Leg {
   std::vector<int> base;
 };
 
-/// Up to as many postures as the argument says.
+/// The largest number of postures is the argument.
 void NocpUpTo(benchmark::State& state) {
   const Leg leg;
   PostureProblem problem = leg.Problem();

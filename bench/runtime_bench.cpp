@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robot at run time: what a controller pays for a call, on whole TALOS.
+// Time of a controller's calls of the robot at run time, for the whole TALOS.
 #include <benchmark/benchmark.h>
 
 #include "elastocal/exports/runtime_robot.hpp"
@@ -33,7 +33,7 @@ void Correct(benchmark::State& state) {
 }
 BENCHMARK(Correct)->Unit(benchmark::kMicrosecond);
 
-/// Along a motion: all joints to and fro by 0.1 rad, 1 mrad a call.
+/// Calls along a motion: all joints go to and fro by 0.1 rad, with 1 mrad a call.
 void Command(benchmark::State& state) {
   constexpr double kStep = 1e-3;
   constexpr int kSteps = 100;
@@ -46,7 +46,7 @@ void Command(benchmark::State& state) {
 }
 BENCHMARK(Command)->Unit(benchmark::kMicrosecond);
 
-/// Each call by itself.
+/// Each call is independent of the others.
 void CommandAlone(benchmark::State& state) {
   Calls calls;
   for (auto _ : state) {  // NOLINT(clang-analyzer-deadcode.DeadStores)

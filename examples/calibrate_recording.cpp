@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibrates a robot from what was recorded of it: a posture table, or recording folders.
+// Calibrates a robot from its recording: a posture table, or recording folders.
 //
 //   calibrate_recording PROJECT.yaml RECORDING...
 

@@ -20,7 +20,7 @@ import sys
 
 FAMILIES = ("tag36h11", "tag25h9", "tag16h5", "tagStandard41h12", "tagStandard52h13", "tagCircle21h7", "tagCircle49h12")
 JPEG, PNM = (".jpg", ".jpeg"), (".pgm", ".ppm", ".pnm")
-MOST_WRONG_BITS = 1  # more are often no tags
+MOST_WRONG_BITS = 1  # with more, it is often no tag
 
 
 class Image(ctypes.Structure):
@@ -57,7 +57,7 @@ class Detector:
         library.apriltag_detector_create.restype = ctypes.POINTER(DetectorHead)
         library.apriltag_detector_detect.restype = ctypes.POINTER(Array)
         self.detector = library.apriltag_detector_create()
-        self.detector.contents.decimate = 1.0  # corners from all pixels
+        self.detector.contents.decimate = 1.0  # use all pixels for corners
         library.apriltag_detector_add_family_bits(self.detector, ctypes.c_void_p(getattr(library, family + "_create")()),
                                                   MOST_WRONG_BITS)
 

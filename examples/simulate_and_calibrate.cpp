@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library from C++: draw a robot with errors, record it, find the errors again.
+// The library in C++: draws a robot with errors, records it, and estimates the errors.
 //
 //   simulate_and_calibrate models/talos/project.yaml LHAND
 //

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// libFuzzer targets: arbitrary bytes must end in a value that makes sense, or in an InputError. One
-// program, since the headers take longer to compile than the targets; the environment variable
-// FUZZ_TARGET says which one it runs.
+// libFuzzer targets: for arbitrary bytes, a reader must return a valid value or throw an
+// InputError. All targets are in one program, since their headers take longer to compile. The
+// environment variable FUZZ_TARGET selects the target.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -47,7 +47,7 @@ const Project& TableProject() {
   return project;
 }
 
-/// The origins of joints are found again where they were read.
+/// The writer must find the origins of joints where the reader has read them.
 void FuzzUrdf(std::string_view bytes) {
   const std::string text(bytes);
   const RobotTree tree = ParseUrdf(text, "fuzz.urdf");
@@ -64,7 +64,7 @@ void FuzzUrdf(std::string_view bytes) {
   }
 }
 
-/// Beside robot.urdf, which the seeds name.
+/// The project is beside robot.urdf, which the seeds name.
 void FuzzProject(std::string_view bytes) {
   const Project project = ParseProject(std::string(bytes), kFolder / "project.yaml");
   for (const Chain& chain : project.chains) ChainMarkers(project, chain);
@@ -93,7 +93,7 @@ void FuzzExperiment(std::string_view bytes) {
   for (const TrialFiles& trial : experiment.trials) Demand(!trial.chains.empty());
 }
 
-/// A marker file and a joint log, with a line `===` between them, become samples or a refusal.
+/// A marker file and a joint log, separated by a line `===`, give samples or are refused.
 void FuzzTrial(std::string_view bytes) {
   static const MarkedRobot robot = [] {
     MarkedRobot marked = MakeMarkedRobot(TableProject());
@@ -119,7 +119,7 @@ void FuzzTrial(std::string_view bytes) {
   }
 }
 
-/// A calibration.yaml becomes an estimate that can be compared with itself.
+/// A calibration.yaml gives an estimate that can be compared with itself.
 void FuzzCalibration(std::string_view bytes) {
   const CalibrationEstimate estimate = ParseEstimate(std::string(bytes), "fuzz.yaml");
   for (const ParameterEstimate& parameter : estimate.parameters) {
@@ -128,7 +128,7 @@ void FuzzCalibration(std::string_view bytes) {
   FindCommonParameters(estimate, estimate);
 }
 
-/// A covariance that is read is square, finite and as symmetric as the reader says.
+/// A covariance that is accepted is square, finite and as symmetric as the reader promises.
 void FuzzCovariance(std::string_view bytes) {
   CalibrationEstimate estimate;
   estimate.parameters = {
@@ -142,7 +142,7 @@ void FuzzCovariance(std::string_view bytes) {
   Demand(estimate.covariance.allFinite() && names >= 2);
 }
 
-/// Postures that are read are written so that as many are read again.
+/// Postures that are accepted can be written, and the same number is read again.
 void FuzzPostureFile(std::string_view bytes) {
   const Project& project = TableProject();
   const auto chains = ParsePostureFile(std::string(bytes), "fuzz.yaml", project);
@@ -163,20 +163,20 @@ void DemandMotion(std::string_view bytes) {
   DemandIncreasing(motion.time_s);
 }
 
-/// A motion, and the same text as a list of postures.
+/// Reads a motion, and the same text as a list of postures.
 void FuzzMotion(std::string_view bytes) {
   TextStream stream(bytes);
   try {
     const JointMotion list = ReadPostureList(stream, "fuzz.csv", TableProject());
     Demand(list.q.rows() == list.sample_count());
   } catch (const InputError&) {
-    DemandMotion(bytes);  // it may be a motion all the same
+    DemandMotion(bytes);  // the text may also be a motion
     return;
   }
   DemandMotion(bytes);
 }
 
-/// A marker was seen or it was not, and the rate can be divided by.
+/// A marker is either seen or not, and the rate is not zero.
 void DemandMarkers(const MarkerTrajectories& markers) {
   Demand(markers.rate_hz > 0.0 && std::isfinite(markers.rate_hz));
   Demand(markers.positions.cols() == 3 * markers.marker_count());
@@ -190,7 +190,7 @@ void DemandMarkers(const MarkerTrajectories& markers) {
 
 void FuzzQtm(std::string_view bytes) { DemandMarkers(ParseQtmTsv(std::string(bytes), "fuzz.tsv")); }
 
-/// What every reader of recordings promises.
+/// Checks what all readers of recordings promise.
 template <RecordingFile (*Read)(const ByteSource&, const ReaderOptions&)>
 void FuzzRecording(std::string_view bytes) {
   const std::size_t size = bytes.size();
@@ -213,7 +213,7 @@ struct Target {
   void (*run)(std::string_view bytes);
 };
 
-// Its seeds: corpus/<name>.
+// The seeds of a target are in corpus/<name>.
 const Target kTargets[] = {
     {"calibration", FuzzCalibration},
     {"covariance", FuzzCovariance},
@@ -237,7 +237,7 @@ const Target kTargets[] = {
     {"vicon", FuzzRecording<ReadViconCsv>},
 };
 
-const Target* target = nullptr;  // that this process runs
+const Target* target = nullptr;  // the target of this process
 
 }  // namespace
 }  // namespace elastocal
@@ -248,12 +248,12 @@ extern "C" int LLVMFuzzerInitialize(int* /*argc*/, char*** /*argv*/) {
   const std::string_view name = chosen == nullptr ? "" : chosen;
   const auto* found = std::find_if(std::begin(kTargets), std::end(kTargets),
                                    [&](const auto& entry) { return entry.name == name; });
-  if (found == std::end(kTargets)) {  // scripts/fuzz asks so for the names
+  if (found == std::end(kTargets)) {  // scripts/fuzz gets the names in this way
     for (const auto& entry : kTargets) std::puts(entry.name);
     std::exit(name.empty() ? 0 : 2);
   }
   elastocal::target = found;
-  elastocal::TableProject();  // were it refused, so would be all that is read beside it
+  elastocal::TableProject();  // if it were refused, all files read with it would be
   return 0;
 }
 

@@ -6,7 +6,7 @@
 namespace elastocal::python {
 namespace {
 
-/// The program: as it is built and installed beside this module, or on the path.
+/// Finds the program: in the build or the installation of this module, or on the path.
 py::object FindProgram(const py::object& given) {
   if (!given.is_none()) return py::str(given);
   Dl_info module{};
@@ -24,7 +24,7 @@ py::object FindProgram(const py::object& given) {
   return found;
 }
 
-/// What the program says of an error, without its own name.
+/// The program's error message without its own name.
 std::string MessageOf(const std::string& said) {
   constexpr std::string_view kError = "error: ";
   const std::size_t at = said.rfind(kError);
@@ -54,7 +54,7 @@ py::object Batch(const Path& manifest, const Path& folder, int workers, double l
   py::tuple texts;
   try {
     texts = process.attr("communicate")();
-  } catch (const py::error_already_set&) {  // Ctrl-C
+  } catch (const py::error_already_set&) {  // for instance on Ctrl-C
     process.attr("terminate")();
     process.attr("wait")();
     throw;

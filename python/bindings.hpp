@@ -20,7 +20,8 @@
 #include "elastocal/project/project.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 
-// What the parts of the Python module share. Each part adds classes and functions of one subject.
+// Declarations that the parts of the Python module share. Each part adds classes and functions of
+// one subject.
 
 namespace elastocal::python {
 
@@ -41,13 +42,14 @@ void AddRuntime(py::module_& module);      ///< Runtime
 void AddUsing(py::module_& module);        ///< export, compensate
 void AddBatches(py::module_& module);      ///< batch
 
-/// No result: the limits leave no posture, or no motion. `elastocal.InfeasibleError`.
+/// There is no result: the limits allow no posture or no motion. In Python
+/// `elastocal.InfeasibleError`.
 struct Infeasible : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a long call does meanwhile: it lets other Python threads run, and ends when a signal's
-/// handler raises, as that of Ctrl-C does. Nothing of Python may be touched while it lives.
+/// Behaviour of a long call: other Python threads may run, and the call ends when a signal's
+/// handler raises, for instance that of Ctrl-C. No Python object may be used while this lives.
 class LongCall {
  public:
   LongCall();
@@ -57,41 +59,42 @@ class LongCall {
   Interruptible interruptible_;
 };
 
-/// Does work as a long call.
+/// Runs work as a long call.
 template <typename Work>
 auto Unlocked(const Work& work) {
   const LongCall guard;
   return work();
 }
 
-/// A dict of what a JSON text holds.
+/// The dict of a JSON text.
 py::object FromJson(const std::string& text);
 
-/// One path, or several.
+/// One or several paths.
 Paths PathsOf(const py::object& paths);
 
-/// What a function takes as a project: a Project, or the file of one.
+/// A project argument: a Project, or the file of one.
 struct ProjectOrFile {
   Project project;
 };
 
-/// Raises TypeError for anything else, and throws InputError for a file that is wrong.
+/// Raises TypeError for other types, and throws InputError for a bad file.
 Project ProjectOf(const py::handle& given);
 
-/// Positions by coordinate of the tree [rad or m]: an array, or a dict of joints, the others
-/// being at zero. Throws InputError with `what` for another size or an unknown joint.
+/// Positions by coordinate of the tree [rad or m], from an array, or from a dict of joints, in
+/// which missing joints are at zero. Throws InputError with `what` for another size or an unknown
+/// joint.
 Eigen::VectorXd PositionsOf(const py::object& q, const Names& coordinates, const std::string& what);
 
-/// Joints that are entries of q, in its order.
+/// Names of the joints that are entries of q, in its order.
 Names CoordinateNames(const RobotTree& tree);
 
-/// Throws InputError for a value outside the bounds of an option of the command line
-/// ("plan --move-s"), in the name of the argument that is called like it (move_s).
+/// Throws InputError for a value outside the bounds of a command-line option ("plan --move-s"). The
+/// message names the argument of the same name (move_s).
 void ExpectBounded(const std::string& option, double value);
-/// The same for a count.
+/// The same check for a count.
 void ExpectWithin(const char* argument, long long value, long long least, long long most);
 
-/// The entry of a name. Throws InputError with all names for another one.
+/// The entry with a name. Throws InputError with all names if there is none.
 template <typename Value>
 const Value& Named(const char* argument, const std::string& name,
                    const std::vector<std::pair<const char*, Value>>& values) {

@@ -12,34 +12,34 @@
 namespace elastocal::python {
 namespace {
 
-/// For a project with contact or instruments.
+/// Checks an argument for projects with contact or instruments.
 void Expect(bool usual, const char* argument, const std::string& why) {
   if (usual) return;
   throw InputError(std::string(argument) + ": not with contact or instruments: " + why);
 }
 
-/// Raises TypeError, as Python does for an argument that is missing.
+/// Raises TypeError like Python for a missing argument.
 Paths RecordingsOf(const py::object& recordings, const std::string& argument) {
   if (!recordings.is_none()) return PathsOf(recordings);
   throw py::type_error("missing argument '" + argument +
                        "': the file or folder of a recording, or a list of them, was expected");
 }
 
-/// A calibration that was made in this process, from markers or from touches and instruments.
+/// A calibration from markers, or from touches and instruments, that was made in this process.
 struct PyCalibration {
   Project project;
   bool deployable;
   std::string status;
   Names objections, warnings;
-  double urdf_rmse;      ///< m, on the fit; NaN without markers
-  double held_out_rmse;  ///< m, of the same URDF; NaN where nothing was held out
+  double urdf_rmse;      ///< m, in the fit; NaN without markers
+  double held_out_rmse;  ///< m, of the same URDF; NaN if nothing was held out
   CalibrationResult result;
   std::map<std::string, std::string> files;
   RunRecord record = {};                ///< for runs.json; `command_line` is made when saved
-  std::vector<std::string> words = {};  ///< of a command line that gives the same
+  std::vector<std::string> words = {};  ///< command line with the same result
 };
 
-/// What calibrate() was told.
+/// The arguments of calibrate().
 struct CalibrateArguments {
   std::optional<int> folds;
   std::string fold_by;
@@ -53,7 +53,7 @@ struct CalibrateArguments {
   StepProgress progress;
 };
 
-/// The command line that gives the same, but for its output.
+/// The command line with the same result, without its output.
 std::vector<std::string> CommandWords(const Project& project, const Paths& files,
                                       const CalibrateArguments& given) {
   std::vector<std::string> words = {"elastocal", "calibrate", project.file.string(), "--recording"};
@@ -81,7 +81,7 @@ RunRecord RecordOf(const Project& project, const Paths& files, const CalibrateAr
     inputs.insert(inputs.end(), {earlier.calibration, earlier.covariance});
   }
   if (!given.marker_places.empty()) inputs.push_back(given.marker_places);
-  std::error_code unknown;  // a folder that was removed
+  std::error_code unknown;  // for a folder that was removed
   return {.command = "calibrate",
           .command_line = {},
           .version = ProgramVersion(),
@@ -180,7 +180,7 @@ PyCalibration CalibrateFiles(const ProjectOrFile& project_or_file, const py::obj
   });
 }
 
-/// What `elastocal calibrate -o` writes.
+/// Writes the files of `elastocal calibrate -o`.
 void Save(const PyCalibration& calibration, const Path& folder) {
   RunRecord record = calibration.record;
   std::vector<std::string> words = calibration.words;

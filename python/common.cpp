@@ -19,7 +19,7 @@ py::object FromJson(const std::string& text) {
 
 namespace {
 
-/// Raises TypeError, saying what was expected, for an object of another type.
+/// Raises TypeError with the expected type for an object of another type.
 template <typename Value>
 Value Cast(const py::handle& object, const std::string& expected) {
   try {

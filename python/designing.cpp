@@ -17,7 +17,7 @@ std::vector<Eigen::VectorXd> RowsOf(const py::handle& given, const Project& proj
   for (const py::handle& row : given) {
     const auto one = py::reinterpret_borrow<py::object>(row);
     Eigen::VectorXd q = PositionsOf(one, joints, "postures of " + chain);
-    if (py::isinstance<py::dict>(one)) {  // a posture file leaves them at rest
+    if (py::isinstance<py::dict>(one)) {  // a posture file leaves missing joints at rest
       const auto named = one.cast<py::dict>();
       for (std::size_t i = 0; i < joints.size(); ++i) {
         const auto at = static_cast<Eigen::Index>(i);

@@ -13,9 +13,9 @@ struct PyPlan {
   std::vector<MotionTrial> trials;
 };
 
-/// A trajectory that a user gives: a Plan, a file (CSV), or a dict with `time_s` (samples,),
-/// `positions` (samples, joints) and perhaps `support`. It is read as from a file, so that it has
-/// its bits.
+/// A trajectory from a user: a Plan, a file (CSV), or a dict with `time_s` (samples,), `positions`
+/// (samples, joints) and optionally `support`. It is converted through the text of a file, so that
+/// it has the same bits.
 JointMotion MotionOf(const py::object& given, const Project& project);
 
 }  // namespace elastocal::python

@@ -12,7 +12,7 @@ struct PyDesign {
   std::vector<ChainPostures> postures;
   std::string summary;  ///< JSON
   Names warnings = {};
-  /// Of a design from nothing, which has curves as well.
+  /// The whole design, with its curves, if it did not start from a calibration.
   std::optional<PostureDesign> whole = {};
   PostureDesignOptions options = {};
 
@@ -20,9 +20,9 @@ struct PyDesign {
   std::string text() const { return FormatPostureFile(project.tree, postures); }
 };
 
-/// Postures that a user gives: a Design, a posture file, or a dict of chains with arrays
-/// (postures, joints) or lists of dicts of joints. They are read as from a file, so that they have
-/// its bits. A chain of a dict stands on the feet that the project gives it.
+/// Postures from a user: a Design, a posture file, or a dict of chains with arrays (postures,
+/// joints) or lists of dicts of joints. They are converted through the text of a file, so that they
+/// have the same bits. A chain of a dict stands on the feet that the project states for it.
 std::vector<ChainPostures> PosturesOf(const py::object& given, const Project& project);
 
 }  // namespace elastocal::python

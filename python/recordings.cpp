@@ -26,7 +26,7 @@ py::dict ToDict(const MarkerTrajectories& markers, const RecordingFile& file) {
   return result;
 }
 
-/// What the file holds, under its own names.
+/// Contents of the file, under its own names.
 py::dict Read(const Path& path, const std::string& unit, const std::string& topic,
               const std::string& tf_frame, const Names& tf_bodies, bool salvage,
               const std::string& time_unit) {
@@ -69,7 +69,7 @@ py::object Info(const Path& file, const std::string& unit, const std::string& to
 
 using Cube = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Throws InputError for positions that no reader would take.
+/// Throws InputError for positions that no reader would accept.
 void ExpectPositions(const Recording& recording, const Names& joints) {
   for (Eigen::Index i = 0; i < recording.q.rows(); ++i) {
     for (Eigen::Index c = 0; c < recording.q.cols(); ++c) {

@@ -5,7 +5,7 @@
 namespace elastocal::python {
 namespace {
 
-/// A limit by entry of q.
+/// A limit for each entry of q.
 template <typename Get>
 Eigen::VectorXd ByCoordinate(const RobotTree& tree, const Get& get) {
   Eigen::VectorXd values(tree.coordinate_count());
@@ -25,7 +25,7 @@ py::dict LinkPoses(const RobotTree& tree, const py::object& q) {
   return result;
 }
 
-/// Names of a list of things that have one.
+/// Names of the elements of a list.
 template <typename Things>
 Names NamesOf(const Things& things) {
   Names names;
@@ -33,7 +33,7 @@ Names NamesOf(const Things& things) {
   return names;
 }
 
-/// Of all entries of q.
+/// The limits of all entries of q.
 auto LimitsOf(double JointLimits::*limit) {
   return [limit](const RobotTree& r) {
     return ByCoordinate(r, [limit](const JointLimits& limits) { return limits.*limit; });

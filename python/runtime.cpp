@@ -7,7 +7,7 @@
 namespace elastocal::python {
 namespace {
 
-/// A calibrated robot for a controller. An object serves one thread at a time.
+/// A calibrated robot for a controller. Only one thread may use an object at a time.
 class PyRuntime {
  public:
   PyRuntime(const Path& calibration, const Path& project, const std::string& content)

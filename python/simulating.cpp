@@ -10,7 +10,7 @@
 namespace elastocal::python {
 namespace {
 
-/// A value as the command line has it: numbers in full, several with commas between.
+/// A value as on the command line: all digits of numbers, and commas between several values.
 std::string SettingTextOf(const py::handle& value) {
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
   if (!py::hasattr(value, "__len__")) return py::repr(py::float_(py::cast<double>(value)));
@@ -34,7 +34,7 @@ void ApplySettings(const py::dict& given, VirtualExperimentOptions& options) {
   }
 }
 
-/// Defaults, or a perfect robot; then the settings, of a file or a dict.
+/// Default or perfect robot, changed by the settings of a file or a dict.
 VirtualExperimentOptions ExperimentOf(const py::object& settings, bool nominal, bool free,
                                       std::uint64_t seed, std::optional<std::uint64_t> robot_seed) {
   VirtualExperimentOptions options;
@@ -52,7 +52,7 @@ VirtualExperimentOptions ExperimentOf(const py::object& settings, bool nominal, 
   return options;
 }
 
-/// The file that a trajectory or postures are given by; "motion" where they are not in a file.
+/// The file of a trajectory or of postures; "motion" if they do not come from a file.
 Path FileOf(const py::object& given) {
   const bool in_memory = py::isinstance<py::dict>(given) || py::isinstance<PyPlan>(given) ||
                          py::isinstance<PyDesign>(given);
@@ -65,7 +65,7 @@ JointMotion PosturesToPlay(const py::object& given, const Project& project) {
   return ListPostures(PosturesOf(given, project), "postures");
 }
 
-/// What a simulation wrote, for programs.
+/// The results of a simulation, for programs.
 struct Outcome {
   std::string summary;
   Names warnings;
@@ -162,7 +162,7 @@ py::object Simulate(const ProjectOrFile& project_or_file, const Path& folder,
   return summary;
 }
 
-/// Every setting with its default, as text, and what it means.
+/// All settings with their defaults as text, and their meanings.
 py::dict DescribeSettings() {
   VirtualExperimentOptions defaults;
   py::dict all;

@@ -13,7 +13,7 @@ import numpy as np
 import elastocal
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
-MARKER = [0.06, 0.01, -0.07, 1.0]  # m, in its link
+MARKER = [0.06, 0.01, -0.07, 1.0]  # m, in the frame of its link
 PROJECT = f"""robot: {{urdf: {SOURCE}/models/talos/talos.urdf}}
 chains:
   - {{name: arm, tip: gripper_left_base_link}}
@@ -70,7 +70,7 @@ class Check(unittest.TestCase):
         self.assertGreater(len(found["suspects"]), 1)
         (proposed,) = found["next_postures"]
         self.assertEqual((proposed["chain"], len(proposed["postures"])), ("arm", 5))
-        # They are those of design --after --check.
+        # The postures are those of `design --after --check`.
         same = elastocal.design_after(self.project, self.folder / "out", check=True, count=5,
                                       joints=found["suspects"]).postures["arm"]
         more = np.array([[q[joint] for joint in self.project.joints] for q in proposed["postures"]])
@@ -91,11 +91,11 @@ class Check(unittest.TestCase):
         self.assertEqual(found, elastocal.check(self.project, self.folder / "out", self.folder / "today.csv"))
         written = elastocal.plan(self.project, file, balanced=False).summary["sets"][0]
         self.assertEqual(len(written["visits"]) + len(written["left_out"]), 5)
-        # Without a section 'design' nothing says what postures may be.
+        # Without a section `design`, nothing limits the postures.
         (self.folder / "project.yaml").write_text(PROJECT)
         said = self.program(self.project.file, *words, "-o", file)
         self.assertIn("No postures that tell which: the project has no section 'design'", said)
-        self.assertFalse(file.exists())  # it would belong to another check
+        self.assertFalse(file.exists())  # a file would belong to another check
 
 
 if __name__ == "__main__":

@@ -88,7 +88,7 @@ class SameAsTheProgram:
         self.assertEqual(found.status, "converged")
         self.assertEqual(found.values.shape, (len(found.parameters),))
         self.assertEqual(found.sd.shape, found.values.shape)
-        self.assertTrue(math.isnan(found.urdf_rmse_mm))  # there are no markers
+        self.assertTrue(math.isnan(found.urdf_rmse_mm))  # no marker was measured
         for parameter, name, value in zip(found.summary["parameters"], found.parameters, found.values):
             self.assertEqual((parameter["name"], parameter["value"]), (name, value))
 
@@ -138,7 +138,7 @@ class Instruments(SameAsTheProgram, ScratchCase):
     def test_known_error_is_found(self):
         found = self.found
         i = found.parameters.index(f"{WRONG}.theta")
-        self.assertAlmostEqual(found.values[i], BY, delta=4.0 * found.sd[i])  # no luck needed
+        self.assertAlmostEqual(found.values[i], BY, delta=4.0 * found.sd[i])  # needs no luck
         self.assertLess(found.sd[i], 0.2 * BY)
         held_out = found.summary["contact"]["kfold"]
         self.assertEqual([one["name"] for one in held_out["instruments"]], ["hand", "imu", "wire"])

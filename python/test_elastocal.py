@@ -54,7 +54,7 @@ class LeftArm(ScratchCase):
         written = self.folder / "cli"
         for name, text in self.found.files.items():
             if name in ("summary.json", "report_data.json"):
-                continue  # with the time that the solver took
+                continue  # contains the time of the solver
             self.assertEqual(text, (written / name).read_text(), name)
         self.assertIn("calibration.yaml", self.found.files)
         there = json.loads((written / "summary.json").read_text())
@@ -95,7 +95,7 @@ class LeftArm(ScratchCase):
 
     def test_runtime(self):
         nominal = elastocal.Runtime(self.folder / "cli", ARM, "nominal")
-        real = elastocal.Runtime(self.folder / "cli", self.project)  # as by its file
+        real = elastocal.Runtime(self.folder / "cli", self.project)  # from its file
         bent = {"arm_left_1_joint": 0.3, "arm_left_2_joint": 0.4, "arm_left_4_joint": -1.2,
                 "leg_left_4_joint": 0.6, "leg_right_4_joint": 0.6}  # within the limits
         q = np.array([bent.get(name, 0.1 if "arm_right_2" not in name else -0.4)
@@ -103,7 +103,7 @@ class LeftArm(ScratchCase):
         tip = "gripper_left_base_link"
         at = [r.forward(q)["links"][tip][:3, 3] for r in (nominal, real)]
         self.assertGreater(np.linalg.norm(at[0] - at[1]), 1e-4)
-        # What is commanded brings the real hand where the nominal one is at q.
+        # The command brings the real hand to where the nominal one is at q.
         again = real.forward(real.command(q))["links"][tip][:3, 3]
         self.assertLess(np.linalg.norm(again - at[0]), 1e-5)
         self.assertLess(real.residual_m, 1e-5)
@@ -111,11 +111,12 @@ class LeftArm(ScratchCase):
         self.assertEqual(real.stopped, [])
         real.correct(q)
         self.assertEqual(real.root_displacement.shape, (6,))
-        # Joints by name, the others at zero; and the project that the calibration names.
+        # Joints are given by name, with the others at zero. The project is the one that the
+        # calibration names.
         again = elastocal.Runtime(self.folder / "cli").forward(bent)["links"][tip]
         every = real.forward(np.array([bent.get(name, 0.0) for name in real.joints]))["links"][tip]
         np.testing.assert_array_equal(again, every)
-        # Uncalibrated, it is the robot of the project.
+        # Without calibration, it is the project's robot.
         nominal_at = nominal.forward(bent)["links"][tip]
         np.testing.assert_allclose(nominal_at, self.project.robot.poses(bent)[tip], atol=1e-9)
         with self.assertRaises(elastocal.InputError):
@@ -149,9 +150,9 @@ class Arrays(unittest.TestCase):
                                   np.array(seen)[:, None, :] + random.normal(0.0, noise, (60, 1, 3)))
             found = elastocal.calibrate(project, table, folds=0)
             i = found.parameters.index("arm_left_4_joint.theta")
-            self.assertAlmostEqual(found.values[i], error, delta=4.0 * found.sd[i])  # no luck needed
+            self.assertAlmostEqual(found.values[i], error, delta=4.0 * found.sd[i])  # needs no luck
             self.assertLess(found.sd[i], 2e-3)
-            self.assertLess(found.urdf_rmse_mm, 2e3 * noise)  # of three coordinates
+            self.assertLess(found.urdf_rmse_mm, 2e3 * noise)  # for three coordinates
             steps = []
             elastocal.calibrate(project, [table], folds=2, progress=lambda *at: steps.append(at))
             self.assertIn(("cross-validation", 2, 2), steps)
@@ -194,7 +195,7 @@ class Files(unittest.TestCase):
     def test_docstrings(self):
         """Everything has one, and help() says what the stub file says."""
         def check(name, thing, node):
-            # pybind11 puts the signature of a function before its text.
+            # pybind11 writes the signature of a function before its docstring.
             said = " ".join((thing.__doc__ or "").split())
             stub = " ".join((ast.get_docstring(node) or "").split())
             self.assertTrue(stub and said.endswith(stub), f"{name}: {stub!r} in the stub, {said!r} in the module")

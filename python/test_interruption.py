@@ -16,7 +16,7 @@ from test_contact import measured_project
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 TALOS = SOURCE / "models/talos/project.yaml"
-LATEST_S = 2.0  # of calls that take 5 s and more; the aim is one, of a machine that has nothing else to do
+LATEST_S = 2.0  # for calls of 5 s and more; the aim is one second on a machine without other work
 CHILD = """
 import sys, elastocal
 project, folder = elastocal.Project(sys.argv[1]), sys.argv[2]

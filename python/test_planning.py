@@ -111,7 +111,7 @@ class Planning(ScratchCase):
         zero = robot.poses(np.zeros(len(robot.joints)))
         self.assertEqual(list(zero), robot.links)
         np.testing.assert_array_equal(zero[robot.links[0]], np.eye(4))
-        # The elbow moves what is beyond it, about its axis, and nothing else.
+        # The elbow moves only what is beyond it, about its axis.
         bent = robot.poses({"arm_left_4_joint": -0.5})
         turn = zero["arm_left_4_link"][:3, :3].T @ bent["arm_left_4_link"][:3, :3]
         self.assertAlmostEqual(np.trace(turn), 1.0 + 2.0 * np.cos(0.5), 12)

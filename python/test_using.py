@@ -24,7 +24,7 @@ class Using(ScratchCase):
         elastocal.calibrate(cls.project, [cls.folder / "recording"]).save(cls.folder / "out")
         time = np.arange(0, 3, 0.01)
         lower, upper = np.clip(cls.project.robot.lower, -2, 2), np.clip(cls.project.robot.upper, -2, 2)
-        positions = (lower + upper) / 2 + 0.05 * (upper - lower) * np.sin(time)[:, None]  # as files have them
+        positions = (lower + upper) / 2 + 0.05 * (upper - lower) * np.sin(time)[:, None]  # as in files
         cls.motion = {"time_s": time, "positions": np.round(positions, 9)}
 
     def program(self, *words):
@@ -39,7 +39,7 @@ class Using(ScratchCase):
             self.assertEqual(here[key], there[key], key)
         self.assertEqual(here["command_line"] + " --quiet", there["command_line"].replace("/calibrated ", "/out "))
         self.assertEqual(*({file.name for file in (self.folder / name).iterdir()} for name in ("out", "calibrated")))
-        elastocal.compensate(self.folder / "out", self.motion)  # finds its project
+        elastocal.compensate(self.folder / "out", self.motion)  # finds the project itself
 
     def test_exports_have_the_bytes_of_the_program(self):
         for name in ("urdf", "c99", "pal"):

@@ -12,7 +12,7 @@
 
 namespace elastocal {
 
-/// Eight postures of another day, with a parameter changed.
+/// Writes a table of eight postures on another day, on which one parameter has changed.
 inline std::string AnotherDay(const std::filesystem::path& table, const std::string& project_file,
                               Eigen::VectorXd truth, const std::string& parameter, double change) {
   const Project project = ReadProject(project_file);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fixed arm whose tool carries tags that a camera in the room sees, and an inertial unit.
+// A fixed arm whose tool carries an inertial unit, and tags that a camera in the room sees.
 #include <functional>
 
 #include "elastocal/mistakes/observed_conventions.hpp"
@@ -18,8 +18,8 @@ constexpr double kRightMm = 80.0;  // edge of the tags
 
 class ArmWithCamera : public ArmWithTracker {
  protected:
-  /// The project where all tags have one size and the third another; with a tracker or without, the
-  /// mounting of the inertial unit known or not.
+  /// The project with this size for all tags but the third, with a tracker or without.
+  /// `unit_known`: the mounting of the inertial unit is known.
   Project ProjectWith(double size_mm, double third_mm, bool tracker = false,
                       bool unit_known = true) const {
     return ParseProject(TextOf(size_mm, third_mm, tracker, unit_known),
@@ -48,7 +48,7 @@ class ArmWithCamera : public ArmWithTracker {
     return text;
   }
 
-  /// The same, where the attitude of the camera is that of its body: x ahead, z up.
+  /// The project with the camera's attitude given as that of its body, with x ahead and z up.
   Project ProjectOfCameraAsBody() const {
     std::string text = TextOf(kRightMm, kRightMm, false, true);
     const std::string right = "rpy_deg: [-90, 0, 90], focal_px";
@@ -60,7 +60,7 @@ class ArmWithCamera : public ArmWithTracker {
     return MakeObservedRobot(project.tree, project.placement, project.contact->setup, {}, {});
   }
 
-  /// What the instruments of a project with tags of the right size show, with noise.
+  /// What the instruments show, with noise, if tags have the right size.
   Observations Seen(const ObservedRobot& model) const {
     ObservedValues truth;
     truth.robot = truth_.robot;
@@ -83,7 +83,7 @@ class ArmWithCamera : public ArmWithTracker {
     return seen;
   }
 
-  /// Calibrates as a project says that may be wrong, from tables of what was seen.
+  /// Calibrates with a project that may be wrong, from tables of what was seen.
   ContactRun CalibrateBy(const Project& project,
                          const std::vector<std::string>& accept = {}) const {
     const Project right =
@@ -132,13 +132,13 @@ class ArmWithCamera : public ArmWithTracker {
     return CalibrateContacts(project, {file, of_corners}, {.folds = 5, .accept = accept});
   }
 
-  /// What is named where there are measurements of this size alone, spoilt (of an instrument
-  /// alone).
+  /// The mistake that is named if there are only measurements of this size, which are spoilt
+  /// (`alone`: only those of one instrument).
   std::string MistakeOf(int size, const std::function<void(Eigen::VectorXd&)>& spoil,
                         bool unit_known = true, const std::string& alone = "") const {
     const ObservedRobot model = ModelOf(ProjectWith(kRightMm, kRightMm, false, unit_known));
     Observations spoilt = Seen(model);
-    bool odd = false;  // one in two tells as much, in half the time
+    bool odd = false;  // every other one suffices, in half the time
     std::erase_if(spoilt.all, [&](const Observation& of) {
       return of.measured.size() != size || (size == 8 && (odd = !odd));
     });
@@ -165,14 +165,14 @@ TEST_F(ArmWithCamera, RightSizesOfTagsAreDeployed) {
   EXPECT_EQ(First(CalibrateBy(ProjectWith(kRightMm, kRightMm, true))), "");
 }
 
-// The residuals are as small as with the right size: the lengths of the robot tell.
+// The residuals are as small as with the right size. The lengths of the robot tell the size.
 TEST_F(ArmWithCamera, AWrongSizeOfAllTagsIsNamed) {
   for (const double factor : {0.96, 1.04}) {
     SCOPED_TRACE(factor);
     const Project project = ProjectWith(factor * kRightMm, factor * kRightMm);
     const std::string named = First(CalibrateBy(project));
     EXPECT_EQ(named.find("size_mm of the tags seems "), 0u) << named;
-    // To 0.2 %: the lengths of this robot err by 1 mm each.
+    // The tolerance is 0.2 %, because each length of this robot has an error of 1 mm.
     EXPECT_NEAR(NumberAfter(named, "size_mm of the tags seems "), factor, 0.006);
     EXPECT_NEAR(NumberAfter(named, "correct the project, where "), kRightMm, 0.5);
     EXPECT_NE(named.find("instead of " + FormatNumber(factor * kRightMm)), std::string::npos);
@@ -192,7 +192,7 @@ TEST_F(ArmWithCamera, TheAttitudeOfACamerasBodyIsNamed) {
             "right of the image and y down was expected");
 }
 
-// Here other lengths tell it: those of the other tags, or of a tracker.
+// Other lengths tell the size here: those of the other tags, or those of a tracker.
 TEST_F(ArmWithCamera, AWrongSizeBesideRightLengthsIsNamed) {
   const std::string third = First(CalibrateBy(ProjectWith(kRightMm, 1.15 * kRightMm)));
   EXPECT_EQ(third.find("size_mm of tag2 is 1.1"), 0u) << third;
@@ -225,7 +225,7 @@ TEST_F(ArmWithCamera, OtherConventionsOfImagesAreNamed) {
                       }),
             "v of the corners of tags is counted upwards: v from the upper edge of the image down "
             "was expected");
-  // As OpenCV has them, and from below left.
+  // The first is the order of OpenCV, the second begins below left.
   for (const auto& [first, place] : {std::pair(3, "above left"), std::pair(0, "below left")}) {
     EXPECT_EQ(MistakeOf(8,
                         [first = first](Eigen::VectorXd& uv) {
@@ -265,14 +265,14 @@ TEST_F(ArmWithCamera, TagsInAnotherUnitAreNamed) {
   const WrittenConvention cm = TagsInOtherUnits(larger, seen).front();
   EXPECT_EQ(cm.what, "size_mm of tags is 10 times too large");
   EXPECT_LT(MisfitOfNominal(*cm.robot, seen).squares, 0.1 * MisfitOfNominal(larger, seen).squares);
-  // Of small tags, cameras that stand elsewhere explain much.
+  // With small tags, other poses of the cameras explain much.
   const ObservedRobot smaller = ModelOf(ProjectWith(0.1 * kRightMm, 0.1 * kRightMm));
   const ObservationFit fit = EstimateObserved(smaller, seen, {}).fit;
   const std::string fault = FindObservedFault(smaller, seen, fit);
   EXPECT_EQ(fault.find("size_mm of tags is 10 times too small"), 0u) << fault;
 }
 
-// The result is right, but a project that is so far off may mean another tag.
+// The result is right. But a project that is so far off may mean another tag.
 TEST_F(ArmWithCamera, AMountingFarFromTheProjectIsSaid) {
   std::string text = TextOf(kRightMm, kRightMm, false, true);
   const std::string right = "centre_px: [640, 480]", of_tag = "rpy_deg: [90, 0, 0]";
@@ -298,7 +298,7 @@ TEST_F(ArmWithCamera, LeftHandedInertialUnitsAreNamed) {
             "z and x of inertial units are exchanged" + right);
   EXPECT_EQ(MistakeOf(3, [](Eigen::VectorXd& shown) { shown[1] *= -1.0; }),
             "y of inertial units is reversed" + right);
-  // Where nobody knows how it is mounted, each of them is as good once it is turned.
+  // If the mounting is unknown, a turned unit explains as much with any of the axes reversed.
   EXPECT_EQ(MistakeOf(3, reversed, false),
             "the axes of inertial units are left-handed (all or one of them reversed, or two "
             "exchanged)" +

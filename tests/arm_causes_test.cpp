@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What geometry and springs do not explain of an arm that a laser tracker sees: the encoders of the
-// table are not those that moved the arm.
+// What remains of an arm's errors beside geometry and springs. A laser tracker sees the arm. The
+// encoders in the table differ from those that moved it.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ class ArmWithCause : public ArmWithTracker {
  protected:
   static constexpr double kSize = 2e-3;
 
-  /// What an encoder whose disc is off centre shows of the postures.
+  /// The postures as an encoder shows them whose disc is off centre.
   Eigen::MatrixXd Shown() const {
     Eigen::MatrixXd shown = q_;
     auto elbow = shown.col(Coordinate("elbow_joint")).array();
@@ -49,7 +49,7 @@ TEST_F(ArmWithCause, IsToldByItsPoses) {
   EXPECT_NEAR(finding.estimate[0], kSize, 4.0 * finding.sd[0]);
   EXPECT_NEAR(finding.estimate[1], 0.0, 4.0 * finding.sd[1]);
   EXPECT_LT(finding.sd[0], 0.2 * kSize);
-  EXPECT_LT(report.search.nested_error, 0.8 * report.search.error);  // in units of the noise
+  EXPECT_LT(report.search.nested_error, 0.8 * report.search.error);  // relative to the noise
   ASSERT_FALSE(report.pictures.empty());
   EXPECT_EQ(report.pictures[0].driver, "elbow_joint");
   const std::string words = DescribeDiagnosis(report)[0];
@@ -62,7 +62,7 @@ TEST_F(ArmWithCause, IsTakenByTheCalibrationAndKnownOnAnotherDay) {
   EXPECT_EQ(run.extra, std::vector<std::string>{"elbow_joint.eccentricity"});
   EXPECT_NEAR(ValueOf(run, "elbow_joint.eccentricity_sin"), kSize, 3e-4);
   ASSERT_TRUE(run.causes.has_value());
-  ASSERT_TRUE(run.rigid_model.has_value());  // a URDF has no place for it
+  ASSERT_TRUE(run.rigid_model.has_value());  // a URDF cannot hold this cause
   EXPECT_TRUE(run.rigid_model->robot.elasticity.corrections.empty());
   EXPECT_LT(ContactRun::Judged(run.calibrated).rows[0].rms,
             0.8 * ContactRun::Judged(*run.geometric).rows[0].rms);
@@ -87,7 +87,7 @@ TEST_F(ArmWithCause, IsTakenByTheCalibrationAndKnownOnAnotherDay) {
   EXPECT_NEAR(ValueOf(updated, "elbow_joint.eccentricity_sin"), kSize, 3e-4);
 }
 
-// What depends on the way that the robot came is applied by exports that follow it.
+// Exports that follow the motion apply what depends on the way to a posture.
 TEST_F(ArmWithCause, HysteresisIsAppliedAtRunTime) {
   Eigen::MatrixXd shown = q_;
   auto elbow = shown.col(Coordinate("elbow_joint"));
@@ -102,8 +102,7 @@ TEST_F(ArmWithCause, HysteresisIsAppliedAtRunTime) {
   EXPECT_NE(run.verdict.remarks[0].find(words + ";"), std::string::npos);
 }
 
-// Each of two parameters is one standard deviation from zero; their sum is known a hundred times
-// better.
+// Each parameter is one standard deviation from zero. Their sum is known a hundred times better.
 TEST(IdleCause, IsJudgedByAllOfItsParametersTogether) {
   CalibrationResult result;
   for (int i = 0; i < 2; ++i) {
@@ -152,7 +151,7 @@ TEST_F(ArmWithCause, NothingIsTakenWhereNothingIs) {
   EXPECT_FALSE(run.rigid_model.has_value());
 }
 
-// Beside so large a hysteresis, springs alone gain nothing that is plain.
+// Beside such a large hysteresis, springs alone have no clear gain.
 TEST_F(ArmWithCause, SpringsThatItHidesAreFoundBesideIt) {
   MakeElastic(30e-6);
   Eigen::MatrixXd shown = q_;
@@ -180,7 +179,7 @@ TEST_F(ArmWithCause, SpringsThatTheProjectForbidsAreSaidWhereCausesStandForThem)
   const ContactRun bent = Calibrate(q_);
   EXPECT_FALSE(bent.extra.empty());
   EXPECT_TRUE(warned(bent));
-  project_.elasticity.torsion = {"turret_joint"};  // others alone are held rigid
+  project_.elasticity.torsion = {"turret_joint"};  // all other joints are held rigid
   const ContactRun partly = Calibrate(q_);
   EXPECT_FALSE(partly.extra.empty());
   EXPECT_TRUE(warned(partly));
@@ -188,7 +187,7 @@ TEST_F(ArmWithCause, SpringsThatTheProjectForbidsAreSaidWhereCausesStandForThem)
 
 TEST_F(ArmWithCause, WhatExplainsAsMuchIsNamedBesideIt) {
   const int elbow = Coordinate("elbow_joint");
-  q_.col(elbow) *= 0.3;  // turns by little: once a turn is almost a line
+  q_.col(elbow) *= 0.3;  // moves little, so that a cycle per turn is almost a line
   Measure(model_, truth_);
   Eigen::MatrixXd shown = q_;
   shown.col(elbow).array() -= 3e-3 * shown.col(elbow).array().sin();
@@ -210,7 +209,7 @@ TEST_F(ArmWithCause, NothingIsNamedWhereNothingIs) {
   EXPECT_FALSE(report.search.findings.empty());
 }
 
-// "by 0.00 mm" said nothing of good recordings.
+// For good recordings, a message with "by 0.00 mm" would say nothing.
 TEST_F(ArmWithCause, SmallErrorsHaveTwoDigits) {
   CauseReport report;
   report.in_metres = true;

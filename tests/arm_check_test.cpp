@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An arm that a laser tracker sees again on another day: has a joint moved?
+// A laser tracker sees an arm again on another day, to tell whether a joint has moved.
 
 #include <algorithm>
 
@@ -19,7 +19,7 @@ class CheckedArm : public ArmWithTracker {
  protected:
   CheckedArm() : calibration_(WriteCalibration()) { MoveTracker(); }
 
-  /// Eight postures of that day.
+  /// Checks eight postures of that day.
   ContactCheck Check(const Eigen::MatrixXd& q, std::size_t first = 0) const {
     return CheckContacts(project_, calibration_, {Table(q, "today.csv", first)});
   }
@@ -31,7 +31,7 @@ TEST_F(CheckedArm, IsUnchangedWhereverTheTrackerStands) {
   const ContactCheck run = Check(q_.topRows(8));
   EXPECT_EQ(CheckStatus(run), "unchanged");
   EXPECT_TRUE(run.alternatives.empty());
-  // A coordinate was measured to 0.1 mm, and 1 mm was the guess of it.
+  // Coordinates were measured to 0.1 mm. The first guess was 1 mm.
   EXPECT_GT(run.left_before[0], 5e-5);
   EXPECT_LT(run.left_before[0], 2.5e-4);
   EXPECT_LT(run.calibrated.rows[0].rms, 2e-4);
@@ -51,7 +51,7 @@ TEST_F(CheckedArm, TheJointThatMovedIsNamedWithItsSize) {
   EXPECT_LT(run.updated.rows[0].rms, run.calibrated.rows[0].rms);
 }
 
-// The tracker stood elsewhere in the second file: three rows of each are in the other one.
+// The tracker stood elsewhere for the second file. Three rows of each file are in the other one.
 TEST_F(CheckedArm, RowsInTheFileOfAnotherSessionAreNamed) {
   const std::vector<Eigen::VectorXd> first = poses_;
   MoveTracker();
@@ -109,7 +109,7 @@ TEST_F(CheckedArm, AWrongGainOrScaleOrRowIsNoRobotThatChanged) {
   EXPECT_NE(row.alternatives[0].find("today.csv:5: "), std::string::npos) << row.alternatives[0];
 }
 
-// Of which nothing else follows.
+// The warning is the only consequence.
 TEST_F(CheckedArm, ARowThatIsFarOffIsAWarning) {
   EXPECT_TRUE(Check(q_.topRows(8)).warnings.empty());
   poses_[3][0] += 3e-3;
@@ -129,8 +129,8 @@ TEST_F(CheckedArm, AnotherRobotIsNotExplained) {
   EXPECT_FALSE(run.FarRows(run.updated).empty());
 }
 
-// Ten postures with what thirty told before are better than ten alone; what is known of a joint
-// that has moved is forgotten.
+// Ten postures with the estimate of thirty earlier ones are better than ten alone. Knowledge of a
+// joint that has moved is forgotten.
 TEST_F(CheckedArm, AFewPosturesUpdateACalibration) {
   Change("elbow_joint.theta", 0.02);
   const auto calibrate = [&](const std::filesystem::path& prior) {

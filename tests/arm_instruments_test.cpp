@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fixed arm whose tool a laser tracker sees, calibrated from a table.
+// A fixed arm whose tool a laser tracker sees. It is calibrated from a table.
 #include <fstream>
 
 #include "elastocal/exports/runtime_robot.hpp"
@@ -17,8 +17,8 @@ TEST_F(ArmWithTracker, ACleanTableIsDeployed) {
   EXPECT_GT(ContactRun::Judged(run.uncalibrated).rows[0].rms, 2e-3);
 }
 
-// The first guess of its noise is 1 mm and 2 mrad; it is ten times better, and nothing may keep
-// the estimate from saying so.
+// The first guess of the noise is 1 mm and 2 mrad. The true noise is ten times smaller, and the
+// estimate must be able to find that.
 TEST_F(ArmWithTracker, ItsNoiseIsFoundHoweverFarItIsFromTheGuess) {
   const ContactStart start = StartContacts(project_, {Table(q_)}, {});
   const ObservationFit fit = EstimateObserved(start.model, start.observations, {}).fit;
@@ -28,15 +28,15 @@ TEST_F(ArmWithTracker, ItsNoiseIsFoundHoweverFarItIsFromTheGuess) {
     const bool place = sources[s].name == "tool.position";
     if (!place && sources[s].name != "tool.rotation") continue;
     ++found;
-    // 90 numbers less a third that the fit explains: 9 %, twice; a quaternion counts half angles.
+    // A third of the 90 numbers is explained by the fit, so the noise is known to 9 %; the
+    // tolerance is twice that. A quaternion counts half angles.
     const double truth = place ? 1e-4 : 2e-4;
     EXPECT_NEAR(fit.spread.sd[s], truth, 0.2 * truth) << sources[s].name;
   }
   EXPECT_EQ(found, 2);
 }
 
-// On the second day the tracker stands elsewhere: each file is a session of it.
-// Positions in mm^2: their weight is a millionth of that of rotations.
+// The positions are in mm^2, so that their weight is a millionth of that of rotations.
 TEST_F(ArmWithTracker, ACovarianceInOtherUnitsIsNamed) {
   const auto remarks = [&](const std::string& place) {
     std::string rows;
@@ -63,6 +63,7 @@ TEST_F(ArmWithTracker, ACovarianceInOtherUnitsIsNamed) {
   EXPECT_NE(remarks("1e-2").find("the covariance of tool"), std::string::npos);
 }
 
+// On the second day the tracker stands elsewhere, so each file is a session.
 TEST_F(ArmWithTracker, ATrackerIsSetUpAnewForEachFile) {
   constexpr int kFirstDay = 18;
   const Transform T = FromXyzRpy({0.6, -1.1, 0.2}, {0.02, -0.03, 1.4});
@@ -82,8 +83,8 @@ TEST_F(ArmWithTracker, ATrackerIsSetUpAnewForEachFile) {
   EXPECT_NEAR((effects[1] - effects[0]).tail<3>().norm(), 1.4, 0.02);
 }
 
-// Nobody says whether its joints give way. Where they do, left-out postures tell; a joint that
-// bends under gravity is no wrong gain.
+// The project does not say whether joints give way. If they do, held-out postures tell it. A joint
+// that bends under gravity has no wrong gain.
 TEST_F(ArmWithTracker, JointsThatGiveWayAreFound) {
   EXPECT_FALSE(Calibrate(q_).geometric);
   MakeElastic(300e-6);
@@ -95,12 +96,12 @@ TEST_F(ArmWithTracker, JointsThatGiveWayAreFound) {
             2.0 * ContactRun::Judged(run.calibrated).rows[0].rms);
   Project rigid = project_;
   rigid.elasticity.torsion.emplace();
-  rigid.calibration.extra.automatic = false;  // causes would stand for the springs
+  rigid.calibration.extra.automatic = false;  // otherwise causes would replace the springs
   EXPECT_FALSE(CalibrateContacts(rigid, {Table(q_)}, {.folds = 5}).geometric);
 }
 
-// Its project has no markers: the parameters of its joints come back all the same, and those that
-// the deployed URDF has are known apart.
+// The project has no markers. Its joint parameters are still restored, and so is which of them the
+// deployed URDF has.
 TEST_F(ArmWithTracker, TheStoredRobotIsTheCalibratedOne) {
   ContactRun run = Calibrate(q_);
   ASSERT_EQ(First(run), "");
@@ -120,7 +121,7 @@ TEST_F(ArmWithTracker, TheStoredRobotIsTheCalibratedOne) {
   EXPECT_GT(restored, 20);
 }
 
-// A calibration from a table whose rows were shifted says better of itself; other data do not.
+// A calibration from a table with shifted rows predicts its own data well, but not other data.
 TEST_F(ArmWithTracker, ValidationRefusesWhatIsWorseOrNoRobot) {
   ContactRun run = Calibrate(q_);
   ASSERT_EQ(First(run), "");
@@ -140,8 +141,8 @@ TEST_F(ArmWithTracker, ValidationRefusesWhatIsWorseOrNoRobot) {
                   .better());
 }
 
-// Errors that are far above what the calibration left are no better robot, though they are smaller
-// than those of the nominal one.
+// Errors far above those that the calibration left do not confirm it, even if they are smaller than
+// those of the nominal robot.
 TEST_F(ArmWithTracker, ValidationKnowsWhatTheCalibrationLeft) {
   ContactRun run = Calibrate(q_);
   ASSERT_EQ(First(run), "");
@@ -157,9 +158,9 @@ TEST_F(ArmWithTracker, ValidationKnowsWhatTheCalibrationLeft) {
   EXPECT_TRUE(slightly.better());
   ASSERT_FALSE(slightly.warnings.empty());
   EXPECT_NE(slightly.warnings.back().find("where the calibration left"), std::string::npos);
-  EXPECT_EQ(slightly.warnings.back().find("without"), std::string::npos);  // no row is off alone
+  EXPECT_EQ(slightly.warnings.back().find("without"), std::string::npos);  // no single row is off
   EXPECT_FALSE(validate(1.02).better());
-  // Two rows that are off alone are named; the others are as good as before.
+  // Two rows that are off are named. The others are as good as before.
   Eigen::MatrixXd q = q_;
   for (const int row : {3, 7}) q(row, Coordinate("elbow_joint")) += 0.05;
   for (const bool refit : {false, true}) {

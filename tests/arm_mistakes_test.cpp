@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes wrong with the table of an arm that instruments see.
+// Mistakes in the table of an arm that instruments see.
 #include <functional>
 
 #include "elastocal/mistakes/observed_faults.hpp"
@@ -29,14 +29,14 @@ TEST_F(ArmWithTracker, MistakesInTheJointsAreNamed) {
             0u);
 }
 
-// Errors that a robot nearly explains: they are found in what the fit leaves.
+// A robot nearly explains these errors. What the fit leaves reveals them.
 TEST_F(ArmWithTracker, FaultsOfTheTableAreNamed) {
   const Eigen::Index elbow = Coordinate("elbow_joint");
   Eigen::MatrixXd q = q_;
   q.col(elbow) *= 1.05;
   const std::string gain = First(Calibrate(q));
   EXPECT_EQ(gain.find("elbow_joint: its positions are 1.0"), 0u) << gain;
-  // To first order it would be 1.048.
+  // To first order, the gain would be 1.048.
   const std::string name = "--accept gain:elbow_joint=";
   ASSERT_NE(gain.find(name), std::string::npos) << gain;
   EXPECT_NEAR(std::stod(gain.substr(gain.find(name) + name.size())), 1.05, 5e-4);
@@ -55,7 +55,7 @@ TEST_F(ArmWithTracker, FaultsOfTheTableAreNamed) {
       << frozen;
 }
 
-// What is accepted leaves the calibration of the sound table.
+// With an accepted correction, the calibration is that of the sound table.
 TEST_F(ArmWithTracker, FaultsAreCorrectedOnRequest) {
   const Eigen::Index elbow = Coordinate("elbow_joint"), shoulder = Coordinate("shoulder_joint");
   const double sound = ContactRun::Judged(Calibrate(q_).calibrated).rows[0].rms;
@@ -137,7 +137,7 @@ TEST_F(ArmWithTracker, ABodyThatWasBumpedIsNamed) {
       << bumped;
 }
 
-// On the second of two days a joint has a wrong gain, or the tracker a wrong scale.
+// On the second of two days, a joint has a wrong gain, or the tracker has a wrong scale.
 TEST_F(ArmWithTracker, AFaultOfOneFileIsNamed) {
   constexpr int kFirstDay = 18;
   const auto first_of = [&](const Eigen::MatrixXd& q, const std::vector<std::string>& accept) {
@@ -171,11 +171,11 @@ TEST_F(ArmWithTracker, AWrongScaleIsNamed) {
   const std::string scale = First(Calibrate(q_));
   const std::string seem = "lengths as they were measured seem ";
   ASSERT_EQ(scale.find(seem), 0u) << scale;
-  // To 0.2 %, which the errors of the lengths leave open.
+  // The tolerance is 0.2 %, because of the errors of the lengths.
   EXPECT_NEAR(std::stod(scale.substr(seem.size())), 1.03, 6e-3);
 }
 
-// No mistake that has a name: the estimate needs what no robot is.
+// This mistake has no name: the estimate would need parameters that no robot has.
 TEST_F(ArmWithTracker, WhatNoRobotExplainsIsRefused) {
   std::reverse(poses_.begin(), poses_.end());
   const ContactRun run = Calibrate(q_);
@@ -183,7 +183,7 @@ TEST_F(ArmWithTracker, WhatNoRobotExplainsIsRefused) {
   EXPECT_NE(First(run).find("rotation of tool off by"), std::string::npos) << First(run);
 }
 
-// From some row on, or in one of two files.
+// The mistakes begin in some row, or are in one of two files.
 TEST_F(ArmWithTracker, MistakesInAPartOfTheTableAreNamed) {
   constexpr int kFrom = 14;
   const Eigen::Index elbow = Coordinate("elbow_joint"), shoulder = Coordinate("shoulder_joint");
@@ -214,7 +214,7 @@ TEST_F(ArmWithTracker, MistakesInAPartOfTheTableAreNamed) {
   }
 }
 
-/// What a tracker sees of an arm with a body on its tool and one on its forearm.
+/// A tracker sees one body on the arm's tool and one on its forearm.
 class ArmWithTwoBodies : public ArmWithTracker {
  protected:
   ArmWithTwoBodies() {
@@ -252,7 +252,7 @@ class ArmWithTwoBodies : public ArmWithTracker {
   Observations seen_;
 };
 
-// One of the rows alone; else "rows:-2", which drops it, would explain as much.
+// Only one of the rows is wrong. Otherwise "rows:-2", which drops it, would explain as much.
 TEST_F(ArmWithTwoBodies, ARowThatContradictsAllOthersIsNamed) {
   const std::string found = MistakeOf([](Observation& of) {
     if (of.posture == kPostures - 1) of.measured[0] += 0.3;
@@ -300,7 +300,7 @@ TEST_F(ArmWithTwoBodies, AnotherConventionOfOneBodyIsNamed) {
             "w comes first in the quaternions of bodies (arm alone): x, y, z, w was expected");
 }
 
-// A height gauge is all that tells a length beside the robot's own.
+// Apart from the robot's own lengths, only a height gauge tells a length.
 TEST_F(ArmWithTracker, MistakesOfAGaugeAreNamed) {
   const Project project = ParseProject(
       "robot: {urdf: " + SourceFile("tests/robots/arm6.urdf").string() +

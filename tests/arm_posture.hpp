@@ -3,7 +3,7 @@
 
 namespace elastocal {
 
-/// A posture file of TALOS with one posture of the left arm; more of it may follow.
+/// A posture file of TALOS with one posture of the left arm, to which more can be appended.
 inline constexpr const char* kPostureOfArm = R"(
 robot: talos
 chains:

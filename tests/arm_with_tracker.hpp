@@ -19,8 +19,7 @@
 
 namespace elastocal {
 
-/// A table of these postures in which every instrument of the model shows something, which is still
-/// to be filled in.
+/// A table of these postures with a measurement of every instrument of the model, to be filled in.
 inline Observations WithEveryInstrument(const ObservedRobot& model, const Eigen::MatrixXd& q) {
   Observations seen;
   seen.files = {"table.csv"};
@@ -34,7 +33,7 @@ inline Observations WithEveryInstrument(const ObservedRobot& model, const Eigen:
   return seen;
 }
 
-/// A fixed arm with errors whose tool a laser tracker sees in 30 postures.
+/// A fixed arm with errors. A laser tracker sees its tool in 30 postures.
 class ArmWithTracker : public testing::Test {
  protected:
   static constexpr int kPostures = 30;
@@ -75,7 +74,7 @@ class ArmWithTracker : public testing::Test {
     Measure(model_, truth_);
   }
 
-  /// All joints of the arm that the tracker sees give way about their axes, rad/(N.m).
+  /// Makes all joints give way about their axes by this compliance, rad/(N.m).
   void MakeElastic(double compliance) {
     std::vector<int> all(project_.tree.joints.size());
     std::iota(all.begin(), all.end(), 0);
@@ -94,7 +93,7 @@ class ArmWithTracker : public testing::Test {
     Measure(elastic, truth);
   }
 
-  /// What the tracker sees of this robot.
+  /// Simulates what the tracker sees of this robot.
   void Measure(const ObservedRobot& model, const ObservedValues& truth) {
     Observations all;
     all.q = q_;
@@ -117,7 +116,7 @@ class ArmWithTracker : public testing::Test {
     return CalibrateContacts(project_, {Table(q)}, {.folds = 5, .accept = accept});
   }
 
-  /// The folder of a calibration from all postures.
+  /// Calibrates from all postures and returns the folder.
   std::filesystem::path WriteCalibration() const { return WriteCalibration(Calibrate(q_)); }
 
   std::filesystem::path WriteCalibration(ContactRun run) const {
@@ -130,7 +129,7 @@ class ArmWithTracker : public testing::Test {
     return out;
   }
 
-  /// On another day the tracker stands elsewhere.
+  /// Moves the tracker, as on another day.
   void MoveTracker() {
     for (std::size_t i = 0; i < model_.setup.quantities.size(); ++i) {
       if (model_.setup.quantities[i].of_surroundings) truth_.quantities[i].x.array() += 0.05;
@@ -138,13 +137,13 @@ class ArmWithTracker : public testing::Test {
     Measure(model_, truth_);
   }
 
-  /// A joint is turned (or a link changed) on that day.
+  /// Turns a joint (or changes a link), as on another day.
   void Change(const std::string& parameter, double by) {
     truth_.robot[FindParameter(model_.robot.parameters, parameter)] += by;
     Measure(model_, truth_);
   }
 
-  /// `first`: of the poses, that of the first row.
+  /// Writes a table of these postures. `first`: number of the pose in the first row.
   std::filesystem::path Table(const Eigen::MatrixXd& q, const std::string& file_name = "table.csv",
                               std::size_t first = 0) const {
     TableWriter table;

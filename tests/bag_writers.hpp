@@ -25,12 +25,12 @@ class Bytes {
     return *this;
   }
   Bytes& F64(double number) { return U(std::bit_cast<std::uint64_t>(number), 8); }
-  /// With its length; as in MCAP.
+  /// Appends a text after its length, as in MCAP.
   Bytes& Text(std::string_view value) {
     U(value.size(), 4).text += value;
     return *this;
   }
-  Bytes& Align(std::size_t width) {  // of CDR, behind its four bytes of head
+  Bytes& Align(std::size_t width) {  // alignment of CDR, after its head of four bytes
     while ((text.size() - 4) % width != 0) text += '\0';
     return *this;
   }
@@ -59,15 +59,15 @@ inline std::string JointStateCdr(const JointLog& log, int sample) {
   return bytes.text;
 }
 
-/// The body whose first point is marker 4 `body`.
+/// The body whose first point is the marker number 4 `body`.
 inline std::string BodyOf(const MarkerTrajectories& markers, int body) {
   const std::string& name = markers.names[4 * static_cast<std::size_t>(body)];
   return name.substr(0, name.size() - 2);  // without "_1"
 }
 
-/// Poses of bodies whose points are the markers, four each (RecordingFile::markers), stamped by the
-/// clock of a log that begins at `start_s`, or transforms (tf) in frame world; `add` gets (channel,
-/// message).
+/// Adds poses of bodies, of which each four markers are the points (RecordingFile::markers), or
+/// transforms (tf) in frame world. Their times are those of a log that begins at `start_s`. `add`
+/// gets (channel, message).
 template <typename AddMessage>
 void AddPoses(const MarkerTrajectories& markers, double start_s, bool as_transforms,
               const AddMessage& add) {
@@ -84,7 +84,7 @@ void AddPoses(const MarkerTrajectories& markers, double start_s, bool as_transfo
       const Eigen::Quaterniond q(axes);
       Bytes bytes;
       bytes.text = std::string("\0\1\0\0", 4);
-      if (as_transforms) bytes.U(1, 4);  // one in the message
+      if (as_transforms) bytes.U(1, 4);  // one transform in the message
       bytes.U(static_cast<std::uint64_t>(ns / 1000000000), 4);
       bytes.U(static_cast<std::uint64_t>(ns % 1000000000), 4).CdrText("world");
       if (as_transforms) bytes.CdrText(BodyOf(markers, body));
@@ -96,7 +96,7 @@ void AddPoses(const MarkerTrajectories& markers, double start_s, bool as_transfo
   }
 }
 
-/// A bag of joint states, and of poses of bodies where they are given (or of tf), without chunks.
+/// A bag without chunks, with joint states and, if given, poses of bodies (or tf).
 inline std::string McapBytes(const JointLog& log, const MarkerTrajectories* bodies = nullptr,
                              double bodies_start_s = 0.0, bool as_transforms = false) {
   const std::string magic("\x89MCAP0\r\n", 8);
@@ -146,7 +146,7 @@ inline std::uint32_t Crc32(std::string_view bytes) {
   return ~crc;
 }
 
-/// Columns of numbers as a .npz that is not compressed.
+/// Columns of numbers as an uncompressed .npz.
 inline std::string NpzBytes(const std::vector<std::pair<std::string, Eigen::VectorXd>>& columns) {
   std::string file, directory;
   for (const auto& [name, column] : columns) {

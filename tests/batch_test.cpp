@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command `batch` as its users run it: once, again, after an interruption, and under mpirun.
+// The command `batch` as its users run it: once, again, after an interruption, and with mpirun.
 
 #include <cstdlib>
 #include <string>
@@ -38,7 +38,7 @@ studies:
   ProgramResult Run(const std::string& folder, const std::string& more = "") {
     return RunProgram("batch " + manifest_ + " -o " + Folder(folder) + " " + more);
   }
-  /// What a page shows.
+  /// The data that a page shows.
   static nlohmann::json PageData(const std::string& page) {
     const std::string begin = R"(<script type="application/json" id="report-data">)";
     const std::size_t from = page.find(begin) + begin.size();
@@ -71,7 +71,7 @@ TEST_F(Batch, IsDoneOnceAndTheSameInWhateverOrder) {
     EXPECT_EQ(Read("one", file), Read("two", file)) << file;
   }
   const auto made = fs::last_write_time(Folder("two") + "/arm_2/calibration.yaml");
-  fs::remove(Folder("two") + "/arm_3.done.json");  // as after an interruption
+  fs::remove(Folder("two") + "/arm_3.done.json");  // as if interrupted
   ASSERT_EQ(Run("two").exit_code, 0);
   EXPECT_EQ(fs::last_write_time(Folder("two") + "/arm_2/calibration.yaml"), made);
   EXPECT_TRUE(fs::exists(Folder("two") + "/arm_3.done.json"));
@@ -82,7 +82,7 @@ TEST_F(Batch, TwoInOneFolderAreRefused) {
   fs::create_directory(Folder("shared"));
   const std::string file = scratch_.Write("shared/.batch.lock", "4711\n");
   const int other = open(file.c_str(), O_RDWR);
-  ASSERT_EQ(flock(other, LOCK_SH), 0);  // the least lock: a batch wants the folder for itself
+  ASSERT_EQ(flock(other, LOCK_SH), 0);  // even a shared lock must stop a batch
   const ProgramResult second = Run("shared");
   EXPECT_EQ(second.exit_code, 3);
   EXPECT_NE(second.err.find("another batch (process 4711) is at work in this folder"),
@@ -90,7 +90,7 @@ TEST_F(Batch, TwoInOneFolderAreRefused) {
       << second.err;
   EXPECT_FALSE(fs::exists(Folder("shared") + "/arm_1.log"));
   close(other);
-  EXPECT_EQ(Run("shared").exit_code, 0);  // a lock that nobody holds any more is none
+  EXPECT_EQ(Run("shared").exit_code, 0);  // the lock counts only while it is held
 }
 
 TEST_F(Batch, ThePriorOfAFleetServesTheNextRobot) {
@@ -104,14 +104,14 @@ TEST_F(Batch, ThePriorOfAFleetServesTheNextRobot) {
       RunProgram("calibrate " + project + " --recording " + Folder("next") + " --prior " +
                  Folder("fleet") + "/prior --days 0 -o " + Folder("out"));
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  // It counts: without it the estimates are others.
+  // The prior counts: without it, the estimates are different.
   ASSERT_EQ(RunProgram("calibrate " + project + " --recording " + Folder("next") + " -o " +
                        Folder("alone"))
                 .exit_code,
             0);
   EXPECT_NE(Read("out", "covariance.csv"), Read("alone", "covariance.csv"));
 
-  // A session whose errors count from another frame is no member of the family.
+  // The errors of this session refer to another frame, so it does not belong to the family.
   std::string text = Read("fleet", "arm_2/calibration.yaml");
   const std::size_t at = text.find("gauge: prior");
   ASSERT_NE(at, std::string::npos);
@@ -134,7 +134,7 @@ TEST_F(Batch, TheSameUnderMpirun) {
   }
 }
 
-/// A shell leaves Ctrl-C of what runs in its background ignored; SIGTERM is heard alike.
+/// Shells make their background processes ignore Ctrl-C. SIGTERM is treated in the same way.
 TEST_F(Batch, AnInterruptionSaysHowFarItCame) {
   std::string manifest = ReadFile(manifest_);
   scratch_.Write("fleet.yaml", manifest.replace(manifest.find("robots: 4"), 9, "robots: 400"));
@@ -168,8 +168,7 @@ TEST_F(Batch, EveryOptionIsKnownBeforeTheFirstTask) {
   EXPECT_FALSE(fs::exists(Folder("out") + "/arm_1.log"));
 }
 
-/// mpirun sends SIGTERM to its ranks where it gets Ctrl-C; the first of them is the one that
-/// speaks.
+/// When mpirun receives Ctrl-C, it sends SIGTERM to its ranks. The first rank prints the message.
 TEST_F(Batch, AnInterruptedRankSaysHowFarTheBatchCame) {
   if (std::system("mpirun --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "there is no mpirun";
   std::string manifest = ReadFile(manifest_);

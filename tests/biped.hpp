@@ -11,8 +11,8 @@
 
 namespace elastocal {
 
-/// A humanoid of 60 kg with two legs of six joints (TALOS's lengths) and a trunk of two, three
-/// markers on each of waist, trunk and feet.
+/// A humanoid of 60 kg: two legs of six joints (with TALOS's lengths), a trunk of two joints, and
+/// three markers on each of waist, trunk and feet.
 struct Biped {
   RobotTree tree;
   std::vector<NamedChain> chains;

@@ -13,14 +13,14 @@ namespace elastocal {
 
 // Recordings in the formats of others, for tests: written byte by byte from their descriptions.
 
-/// How a C3D file is written.
+/// Options for writing a C3D file.
 struct C3dStyle {
   int processor = 84;  ///< 84 Intel, 85 DEC, 86 MIPS
   bool real = true;
   double integer_scale = 0.1;  ///< mm
-  int analog = 0;              ///< analogue numbers a frame
+  int analog = 0;              ///< analogue numbers in each frame
   std::string units = "mm", y_screen = "+Z";
-  double metres = 1e-3;                  ///< in a unit
+  double metres = 1e-3;                  ///< metres per unit
   std::size_t labels_a_list = 255;       ///< the rest goes into LABELS2
   std::vector<std::string> angles = {};  ///< labels that are in POINT:ANGLES as well
   std::string counted_by = "FRAMES";     ///< or "TRIAL", "LONG_FRAMES", "wrapped"
@@ -77,7 +77,7 @@ class C3dWriter {
   std::string Group(int id, const std::string& name) const {
     return Byte(static_cast<int>(name.size())) + Byte(-id) + name + Integer(3) + Byte(0);
   }
-  /// `values`: type, dimensions and data.
+  /// Writes a parameter, whose `values` are type, dimensions and data.
   std::string Parameter(int id, const std::string& name, const std::string& values) const {
     return Byte(static_cast<int>(name.size())) + Byte(id) + name +
            Integer(static_cast<int>(values.size()) + 3) + values + Byte(0);
@@ -112,7 +112,7 @@ class C3dWriter {
     std::string text{'\1', '\x50', '\2', static_cast<char>(style_.processor)};
     const bool wrapped = style_.counted_by == "wrapped";
     const std::size_t counted = wrapped ? frames % 65536 : std::min<std::size_t>(frames, 65535);
-    text += Number(1, "FRAMES", static_cast<int>(counted));  // parameters may stand above the group
+    text += Number(1, "FRAMES", static_cast<int>(counted));  // parameters may precede their group
     text += Group(1, "POINT");
     text += Number(1, "USED", markers_.marker_count());
     text += RealNumber(1, "SCALE", style_.real ? -1.0f : static_cast<float>(style_.integer_scale));

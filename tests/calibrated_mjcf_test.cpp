@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exported MJCF, as MuJoCo plays it, against the calibrated URDF.
+// Compares the exported MJCF in MuJoCo with the calibrated URDF.
 #include "elastocal/description/calibrated_mjcf.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@
 namespace elastocal {
 namespace {
 
-/// The bodies that joint `k` and those after it move, links on fixed joints fused.
+/// The bodies of joints on `parent_body`. Links on fixed joints belong to their body.
 std::string BodyText(const RobotTree& tree, int parent_body) {
   std::string text;
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
@@ -70,7 +70,7 @@ struct CalibratedMjcf {
   std::string text;
 };
 
-/// With the first joint's axis, type and zero said by a class of its body's.
+/// Moves axis, type and zero of the first joint into a default class of its body.
 std::string WithDefaultClass(std::string mjcf, const std::string& axis) {
   const std::size_t body = mjcf.find("<body", mjcf.find("<body") + 1);
   const std::size_t from = mjcf.find(" type=", body), to = mjcf.find("/>", from);
@@ -99,7 +99,8 @@ CalibratedMjcf Export(const std::string& robot, const std::string& compiler) {
   return result;
 }
 
-/// MuJoCo's qpos is the encoder: bodies stand where the calibrated URDF has them at q + offset.
+/// MuJoCo's qpos is the encoder's position: the poses of bodies are those of the calibrated URDF at
+/// q + offset.
 void ExpectThatMujocoAgrees(const CalibratedMjcf& robot) {
   const Model model = Load(robot.text);
   ASSERT_NE(model, nullptr);
@@ -145,7 +146,7 @@ TEST(CalibratedMjcf, DefaultClassesSayWhatJointsAre) {
   const std::string& joint = tree.joints[0].name;
   const std::string text =
       MakeCalibratedMjcf(good, "a.xml", tree, tree, {{joint, 0.125}, {tree.joints[1].name, 0.5}});
-  // Without the class, the axis of the first joint would be MuJoCo's own, and its zero 0.
+  // Without the class, the first joint would have MuJoCo's default axis and a zero of 0.
   const Model model = Load(text);
   ASSERT_NE(model, nullptr);
   const int id = mj_name2id(model.get(), mjOBJ_JOINT, joint.c_str());

@@ -21,7 +21,7 @@
 
 namespace elastocal {
 
-/// The small TALOS with a drawn calibration in a folder.
+/// The small TALOS with a random calibration in a folder.
 class CalibratedTalos : public testing::Test {
  protected:
   CalibratedTalos()
@@ -50,7 +50,7 @@ class CalibratedTalos : public testing::Test {
     scratch_.Write("out/calibration.yaml", MakeCalibrationYaml(estimate));
   }
 
-  /// `export` into a file; its path.
+  /// Exports into a file and returns its path.
   std::string Export(const std::string& format, const std::string& more = "") {
     const std::string file = (scratch_.path() / format).string();
     const ProgramResult result = RunExport(format, file, more);
@@ -80,7 +80,7 @@ class CalibratedTalos : public testing::Test {
     return q.cwiseMax(project_.motion.lower).cwiseMin(project_.motion.upper);
   }
 
-  /// The zeros of the encoders, by coordinate.
+  /// The zeros of the encoders by coordinate.
   Eigen::VectorXd Zeros(const std::map<std::string, double>& by_joint) const {
     Eigen::VectorXd zeros = Eigen::VectorXd::Zero(project_.tree.coordinate_count());
     for (std::size_t c = 0; c < project_.tree.coordinate_joint.size(); ++c) {
@@ -100,7 +100,8 @@ class CalibratedTalos : public testing::Test {
     return zeros;
   }
 
-  /// A robot description is the calibrated rigid robot, at positions of the encoders plus `zeros`.
+  /// Checks that a robot description at the encoders' positions plus `zeros` is the calibrated
+  /// rigid robot.
   void ExpectTheCalibratedRobot(const std::string& urdf,
                                 const std::map<std::string, double>& zeros) {
     const RobotTree tree = ParseUrdf(urdf, "exported");

@@ -21,7 +21,7 @@ class CalibratedUrdfOf : public ::testing::TestWithParam<std::string> {
   RobotTree tree_ = ParseUrdf(urdf_, "urdf");
 };
 
-/// Poses of the links, waist to link, differ by less than rounding over a chain of ten joints.
+/// The poses of all links relative to the waist differ by less than rounding along ten joints.
 void ExpectSamePoses(const CalibrationResult& calibration, const RobotTree& written,
                      const std::map<std::string, double>& encoder_offsets) {
   const ErrorModel& model = calibration.model;
@@ -67,7 +67,7 @@ TEST_P(CalibratedUrdfOf, XacroOffsetsAddUpToTheCalibratedOrigins) {
   const std::string xacro = MakeXacroOffsets(calibrated);
   for (const auto& [joint, origin] : calibrated.calibrated) {
     const auto& nominal = calibrated.nominal.at(joint);
-    // Small changes of the origin are small changes of each component.
+    // A small change of the origin changes each component by little.
     EXPECT_LT((origin.xyz - nominal.xyz).norm(), 0.05) << joint;
     EXPECT_LT((origin.rpy - nominal.rpy).cwiseAbs().maxCoeff(), 0.3) << joint;
     const std::string property = "name=\"" + joint + "_yaw_offset\" value=\"";
@@ -98,7 +98,8 @@ INSTANTIATE_TEST_SUITE_P(Robots, CalibratedUrdfOf,
                                            "tests/robots/mini_humanoid.urdf"),
                          [](const auto& robot) { return std::to_string(robot.index); });
 
-// The right hip is not in the model, but the left one's encoder drives it: its origin turns back.
+// The right hip is not in the model, but the left hip's encoder drives it. Its origin must turn
+// back.
 TEST(CalibratedUrdf, AMimicJointWithoutMarkersStaysWhereItIs) {
   const std::string urdf = ReadFile(SourceFile("tests/robots/mini_humanoid.urdf"));
   const RobotTree tree = ParseUrdf(urdf, "urdf");
@@ -113,13 +114,13 @@ TEST(CalibratedUrdf, AMimicJointWithoutMarkersStaysWhereItIs) {
             (std::map<std::string, double>{{"left_hip_yaw_pitch", 0.01}}));
   ASSERT_EQ(calibrated.calibrated.size(), 1u);
   const UrdfOrigin& origin = calibrated.calibrated.at("right_hip_yaw_pitch");
-  // Back about the axis (0, 1, 1); what differs is of second order, 0.01^2.
+  // The origin turns back about the axis (0, 1, 1). The rest is of second order, 0.01^2.
   const Eigen::Vector3d expected = -0.01 * Eigen::Vector3d(0.0, M_SQRT1_2, M_SQRT1_2);
   EXPECT_LT((origin.rpy - expected).norm(), 1e-4);
   EXPECT_EQ(origin.xyz, calibrated.nominal.at("right_hip_yaw_pitch").xyz);
 }
 
-// xacro's names have letters, digits and '_' alone.
+// Names in xacro consist of letters, digits and '_'.
 TEST(CalibratedUrdf, XacroPropertiesOfJointsWithOtherNamesDiffer) {
   CalibratedUrdf calibrated;
   for (const char* joint : {"a-b", "a.b", "a_b", "2 z", "hip", "hip_roll"}) {
@@ -164,11 +165,11 @@ TEST(CalibratedUrdf, OnlyOriginsOfJointsWithErrorsChange) {
   const CalibratedUrdf calibrated =
       MakeCalibratedUrdf(urdf, "urdf", calibration, ZeroOffsets::kOrigin);
   ASSERT_EQ(calibrated.calibrated.size(), 1u);
-  // An offset of a joint about its own axis, the URDF's y: pitch, and nothing else.
+  // An offset of a joint about its own axis, which is the URDF's y, changes only the pitch.
   const UrdfOrigin& origin = calibrated.calibrated.at("leg_left_3_joint");
   EXPECT_LT((origin.rpy - Eigen::Vector3d(0.0, 0.01, 0.0)).norm(), 1e-15);
   EXPECT_LT((origin.xyz - calibrated.nominal.at("leg_left_3_joint").xyz).norm(), 1e-15);
-  EXPECT_EQ(origin.rpy.x(), 0.0);  // and not 1e-20, which is what rounding leaves
+  EXPECT_EQ(origin.rpy.x(), 0.0);  // not 1e-20 from rounding
   EXPECT_EQ(origin.rpy.z(), 0.0);
   EXPECT_TRUE(calibrated.warnings.empty());
 }
@@ -188,7 +189,8 @@ TEST(CalibratedUrdf, BrokenWristAndParallelAxesAreWarnedOf) {
   EXPECT_NE(all.find("1.000 mm"), std::string::npos) << all;
   EXPECT_NE(all.find("leg_left_3_joint, leg_left_4_joint"), std::string::npos);
   EXPECT_NE(all.find("0.573 deg"), std::string::npos) << all;
-  // Less than half a millimetre, and half a millimetre over half a metre, is no matter to a hand.
+  // For a hand, less than half a millimetre does not matter, nor does half a millimetre over half a
+  // metre.
   calibration.delta[FindParameter(parameters, "arm_left_6_joint.d")] = 0.4e-3;
   calibration.delta[FindParameter(parameters, "leg_left_4_joint.beta")] = 0.8e-3;
   EXPECT_TRUE(MakeCalibratedUrdf(urdf, "urdf", calibration, ZeroOffsets::kOrigin).warnings.empty());
@@ -208,7 +210,7 @@ TEST(CalibratedUrdf, CorrectionsThatMoveUnrecordedBranchesAreWarnedOf) {
     return MakeCalibratedUrdf(urdf, "urdf", calibration, ZeroOffsets::kOrigin).warnings;
   };
   set("arm_left_1_joint.theta");
-  set("arm_left_4_joint.theta");  // carries the forearm, but no other branch
+  set("arm_left_4_joint.theta");  // carries only the forearm
   EXPECT_TRUE(warnings().empty());
   set("torso_2_joint.theta");
   ASSERT_EQ(warnings().size(), 1u);
@@ -217,7 +219,7 @@ TEST(CalibratedUrdf, CorrectionsThatMoveUnrecordedBranchesAreWarnedOf) {
       << warnings()[0];
 }
 
-// The gate: a text that is not the one that the model was read from must not pass.
+// The export must refuse a text other than the one from which the model was read.
 TEST(CalibratedUrdf, ADifferenceToTheModelIsAnError) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   const CalibrationResult calibration = WithErrors(ParseUrdf(urdf, "urdf"), 3);

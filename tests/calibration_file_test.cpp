@@ -57,7 +57,7 @@ TEST_F(CalibrationFile, ReadsBackWhatWasWrittenToTheLastBit) {
   EXPECT_EQ(stored.joint_errors.size(), static_cast<std::size_t>(joint_parameters));
 }
 
-// As the prior of a fleet is written.
+// The prior of a fleet is written like this.
 TEST_F(CalibrationFile, AnEstimateKeepsItsGauge) {
   CalibrationEstimate estimate =
       ParseEstimate(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin), "first");
@@ -68,7 +68,7 @@ TEST_F(CalibrationFile, AnEstimateKeepsItsGauge) {
   EXPECT_EQ(again.parameters.size(), estimate.parameters.size());
 }
 
-// What a prediction without any fit needs: where the waist was, and the markers.
+// A prediction without any fit needs the pose of the waist and the markers.
 TEST_F(CalibrationFile, ReadsBackWaistAndMarkers) {
   CalibrationResult uncalibrated = result_;
   uncalibrated.delta *= 0.5;
@@ -88,7 +88,7 @@ TEST_F(CalibrationFile, ReadsBackWaistAndMarkers) {
 TEST_F(CalibrationFile, ReadsBackWhatPointsUp) {
   Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin));
   EXPECT_EQ(ReadCalibration(file_).gravity, kGravity);
-  const Eigen::Vector3d gravity(0.0, -9.81, 0.0);  // y upwards
+  const Eigen::Vector3d gravity(0.0, -9.81, 0.0);  // y is up
   Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin,
                             {.gravity = gravity, .rmse_3d = 2.5e-4}));
   EXPECT_EQ(ReadCalibration(file_).rmse_3d, 2.5e-4);
@@ -122,10 +122,10 @@ TEST_F(CalibrationFile, ReadsBackWhatTheUrdfHasOfAnotherModel) {
 
 TEST_F(CalibrationFile, ReadsBackWhatGivesWayBelowTheFeet) {
   Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin));
-  EXPECT_TRUE(ReadCalibration(file_).soles.empty());  // as files of earlier versions
+  EXPECT_TRUE(ReadCalibration(file_).soles.empty());  // like files of earlier versions
   const std::vector<SoleSpring> soles = {
       {.leg = "left", .changes = 3, .compliance = 7.4e-7, .sd = 4e-8, .interval_factor = 2.1},
-      {.leg = "tail"},  // nothing told of it
+      {.leg = "tail"},  // nothing is known about it
       {.leg = "right", .changes = 1, .compliance = -1e-7, .sd = 3e-7, .interval_factor = 4.3}};
   Write(MakeCalibrationYaml(result_, "there.csv", ZeroOffsets::kOrigin, {.soles = soles}));
   const std::vector<SoleSpring> stored = ReadCalibration(file_).soles;
@@ -298,7 +298,7 @@ TEST(Fingerprint, TellsNominalRobotsApart) {
   const std::string same = FingerprintWith("<robot", "<robot");
   EXPECT_EQ(same.size(), 16u);
   EXPECT_EQ(same.find_first_not_of("0123456789abcdef"), std::string::npos);
-  const std::string origin = "<origin xyz=\"0 -0.01 0.05\"/>";  // of finger_right_joint
+  const std::string origin = "<origin xyz=\"0 -0.01 0.05\"/>";  // belongs to finger_right_joint
   for (const auto& [what, by] : std::vector<std::pair<std::string, std::string>>{
            {origin, R"(<origin xyz="0 -0.01 0.05001"/>)"},
            {origin, R"(<origin xyz="0 -0.01 0.05" rpy="0 1e-5 0"/>)"},

@@ -15,7 +15,8 @@
 namespace elastocal {
 namespace {
 
-/// An arm that is made to `exact` shows a scale of 0.6 %, which one with errors of 1 mm may have.
+/// An arm that is made with errors of `exact` reveals a scale error of 0.6 %. One with errors of 1
+/// mm may have that scale, too.
 void ExpectThatAnExactArmTells(const ErrorModel& model, const BaseParameters& base,
                                const CalibrationOptions& options, double exact) {
   constexpr int kRobots = 10;
@@ -41,7 +42,7 @@ void ExpectThatAnExactArmTells(const ErrorModel& model, const BaseParameters& ba
   }
 }
 
-// Twenty lengths and more (kManyLengths).
+// The arm has at least twenty lengths (kManyLengths).
 TEST(CameraScale, IsToldTheBetterTheMoreExactlyTheArmIsMade) {
   const Project project = ParseProject(kTalosLeftArm, SourceFile("project.yaml"));
   const ErrorModel model = MakeProjectModel(project, {});
@@ -49,7 +50,7 @@ TEST(CameraScale, IsToldTheBetterTheMoreExactlyTheArmIsMade) {
                             project.calibration, 0.2e-3);
 }
 
-/// Seven joints with axes at right angles, as common arms have them.
+/// Seven joints with axes at right angles, like common arms.
 ErrorModel SevenJointArm() {
   using Eigen::Vector3d;
   const Vector3d y = Vector3d::UnitY(), z = Vector3d::UnitZ();
@@ -66,7 +67,7 @@ ErrorModel SevenJointArm() {
                                {"HAND_3", 7, {0.02, -0.07, 0.19}}});
 }
 
-// Of eight lengths to nineteen that the recording determines (kNarrowestOfSome).
+// The recording determines between eight and nineteen lengths (kNarrowestOfSome).
 TEST(CameraScale, IsToldByAnArmOfFewLengths) {
   const ErrorModel model = SevenJointArm();
   ExpectThatAnExactArmTells(model, FindBaseParameters(model, {}), {}, 0.1e-3);

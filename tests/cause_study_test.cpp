@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Virtual robots with one cause of error that neither geometry nor springs describe: it is named.
+// Virtual robots with one cause of error that is neither geometry nor a spring. The cause is named.
 
 #include <cmath>
 #include <cstdlib>
@@ -28,16 +28,16 @@ namespace {
 
 using Kind = ParameterKind;
 
-constexpr double kMarkerNoise = 0.1e-3;  // m: of a posture, which is the mean of many frames
+constexpr double kMarkerNoise = 0.1e-3;  // m, of a posture: the mean of many frames
 
 struct Injected {
   const char* cause;
   const char* parameter;
   double size;
-  bool soft = false;  ///< of a robot whose springs are soft, and whose masses are known
+  bool soft = false;  ///< the robot has soft springs and known masses
 };
 
-// On a joint that turns far, with a long lever, under loads of both signs.
+// The joint turns far, has a long lever, and bears loads of both signs.
 constexpr Injected kInjected[] = {
     {"arm_left_3_joint.eccentricity", "arm_left_3_joint.eccentricity_sin", 1e-3},
     {"arm_left_3_joint.backlash", "arm_left_3_joint.backlash", 1e-3},
@@ -51,16 +51,17 @@ constexpr Injected kInjected[] = {
     {"gravity.tilt", "gravity.tilt_x", M_PI / 180.0, true},
 };
 
-/// How many times softer than TALOS that robot is (compliances of 0.2 to 1 mrad/(N.m)), and how
-/// well masses are known. With the compliances of TALOS, 0.02 to 0.1 mrad/(N.m), a mass that is off
-/// by 10 % moves the hand by a hundredth of the noise beside what springs explain.
+/// The robot with soft springs is this many times softer than TALOS (compliances of 0.2 to 1
+/// mrad/(N.m)). The other two say how well masses are known. With the compliances of TALOS, 0.02 to
+/// 0.1 mrad/(N.m), a mass error of 10 % moves the hand by only a hundredth of the noise more than
+/// springs explain.
 constexpr double kSoftness = 10.0, kUsualMassSd = 0.05, kKnownMassSd = 0.01;
 
 Project ArmProject() { return ParseProject(kTalosLeftArm, SourceFile("project.yaml")); }
 
-/// Sixty postures in two hours of a robot with errors of geometry, springs, masses and `injected`
-/// (null: nothing else), and where they are to be found. `soft`: see kSoftness. Another `session`
-/// has other postures and noise of the same robot; `turned`: the zero of arm_left_4_joint, rad.
+/// Sixty postures in two hours of a robot with errors of geometry, springs and masses, and with the
+/// cause `injected` (null: none). `soft`: see kSoftness. Another `session` has other postures and
+/// noise of the same robot. `turned`: the zero of arm_left_4_joint, rad.
 Measurements Record(const Project& project, const Injected* injected, bool soft, std::uint64_t seed,
                     std::uint64_t session = 0, double turned = 0.0) {
   Random random(seed);
@@ -103,21 +104,21 @@ Project Elastic(Project project) {
   return project;
 }
 
-/// Of how many seeds; `ELASTOCAL_CAUSE_SEEDS` gives the study of docs/accuracy.md.
+/// Number of seeds. `ELASTOCAL_CAUSE_SEEDS` runs the study of docs/accuracy.md.
 int Seeds() {
   const char* seeds = std::getenv("ELASTOCAL_CAUSE_SEEDS");
   return seeds == nullptr ? 2 : std::atoi(seeds);
 }
 
-/// The first of them: those below 200 served to develop the tests of causes.
+/// First seed. Those below 200 were used to develop the tests of causes.
 std::uint64_t FirstSeed() {
   const char* first = std::getenv("ELASTOCAL_CAUSE_FIRST_SEED");
   return first == nullptr ? 1000 : std::strtoull(first, nullptr, 10);
 }
 
-/// The estimate is the injected size, within four standard deviations and what springs, which are
-/// fitted beside it, may take of it: of what acts through springs half, because the size is one
-/// step from springs that were estimated without it.
+/// Expects the injected size, within four standard deviations and the share that springs may take
+/// of it. Causes that act through springs may lose half, because the size is one step from springs
+/// that were estimated without it.
 void ExpectSize(const CauseReport& report, const CauseFinding& finding, const Injected& injected) {
   const double share = injected.soft ? 0.5 : 0.1;
   for (std::size_t i = 0; i < finding.parameters.size(); ++i) {
@@ -128,7 +129,7 @@ void ExpectSize(const CauseReport& report, const CauseFinding& finding, const In
   }
 }
 
-/// What the injected cause does at a value of the variable that drives it, rad or m.
+/// The effect of the injected cause (rad or m) at a value of the variable that drives it.
 double InjectedEffect(const Injected& injected, const CausePicture& picture, double x,
                       const CauseReport& report) {
   const std::string cause = injected.cause;
@@ -139,13 +140,13 @@ double InjectedEffect(const Injected& injected, const CausePicture& picture, dou
   return injected.size * (x - correction.centre);  // gear, drift, creep
 }
 
-/// How far pictures are from the injected cause, over all robots that have it.
+/// Deviations of the pictures from the injected cause, over all robots that have it.
 struct PictureErrors {
-  double squares = 0.0;  ///< of dots, in standard deviations
-  double off = 0.0;      ///< squares of dots, and of what the cause does there
+  double squares = 0.0;  ///< of the dots' errors, in standard deviations
+  double off = 0.0;      ///< squares of the dots' errors; `effect`: of the cause there
   double effect = 0.0;
   double count = 0.0;
-  double curve_off = 0.0;  ///< squares of the ends of curves
+  double curve_off = 0.0;  ///< squares of the errors of the curves' ends
   double ends = 0.0;
 };
 
@@ -172,8 +173,8 @@ void AddPicture(const CauseReport& report, const Injected& injected, PictureErro
   }
 }
 
-/// The dots show the injected cause, and scatter about it no more than they say; the curve is near
-/// it, as far as springs and geometry leave it.
+/// Expects that dots show the injected cause with no more scatter than stated, and that curves are
+/// near it, apart from the share of springs and geometry.
 void ExpectPictures(const PictureErrors& errors, const char* cause) {
   ASSERT_GT(errors.count, 0.0) << cause;
   ASSERT_GT(errors.ends, 0.0) << cause;
@@ -184,8 +185,8 @@ void ExpectPictures(const PictureErrors& errors, const char* cause) {
       << cause;
 }
 
-/// What acts through springs is a line through zero: the joint's compliance times what the cause
-/// adds to its load. The dots follow it.
+/// Expects a line through zero for a cause that acts through springs: the joint's compliance times
+/// the load that the cause adds. The dots follow it.
 void ExpectLine(const CauseReport& report) {
   const CausePicture& picture = report.pictures.front();
   ASSERT_EQ(picture.variable, CauseVariable::kAddedLoad);
@@ -231,7 +232,7 @@ TEST(Causes, TheInjectedOneIsNamedFirst) {
   }
 }
 
-/// Of how many robots without a cause one is named.
+/// Number of robots without a cause for which one is named.
 int NamedWithoutCause(bool soft) {
   const Project project = Elastic(ArmProject());
   int named = 0;
@@ -253,7 +254,7 @@ TEST(Causes, NothingIsNamedWhereNothingIs) {
   for (const bool soft : {false, true}) EXPECT_LE(NamedWithoutCause(soft), 1 + Seeds() / 20);
 }
 
-/// What a calibration with these causes says of a recording.
+/// The estimate of a calibration with these causes.
 CalibrationEstimate Calibrated(const Measurements& measured, const std::vector<std::string>& extra,
                                const std::string& source) {
   Project project = Elastic(ArmProject());
@@ -270,7 +271,7 @@ CalibrationEstimate Calibrated(const Measurements& measured, const std::vector<s
   return estimate;
 }
 
-// One session is calibrated without the cause that the robot has, the other one with it.
+// One session is calibrated without the robot's cause, the other one with it.
 TEST(Causes, ComparedWithASessionThatDoesNotKnowThem) {
   int robots = 0, false_alarms = 0, named = 0;
   for (const Injected& injected : kInjected) {
@@ -325,8 +326,7 @@ TEST(Causes, ProjectsSayWhichAreEstimated) {
                    {"torso_1_joint.gearing", "torso_1_joint.gear"});
 }
 
-// A gear that is off by 1.5 % hides the springs, which bring far less: they are chosen once
-// the gear is.
+// A gear error of 1.5 % hides the springs, which gain far less. Springs are chosen after the gear.
 TEST(ChooseModel, SpringsAreChosenBesideACauseThatHidesThem) {
   const Injected gear = {"arm_left_3_joint.gear", "arm_left_3_joint.gear", 1.5e-2};
   const Measurements measured = Record(ArmProject(), &gear, false, FirstSeed());
@@ -347,7 +347,7 @@ TEST(ChooseModel, SpringsThatTheProjectForbidsAreMissedWhereCausesStandForThem) 
   const ModelChoice choice = ChooseModel(measured, {}, 5, 2, rigid);
   EXPECT_FALSE(rigid.elasticity.extra.empty());
   EXPECT_TRUE(choice.misses_springs);
-  // So are those of some joints alone; where all are elastic, none is missed.
+  // Springs of some joints alone are missed too. If all joints are elastic, none is missed.
   Project partly = ArmProject(), named = Elastic(ArmProject());
   partly.elasticity.torsion = {"torso*", "arm_left_5_joint"};
   EXPECT_TRUE(ChooseModel(measured, {}, 5, 2, partly).misses_springs);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bad input as users meet it: refused with exit code 3, the place named, and nothing written.
+// Bad input is refused with exit code 3 and the place of the error, and nothing is written.
 
 #include <cmath>
 
@@ -66,7 +66,7 @@ TEST_F(Program, ConvertReplacesOnlyWhatItWrote) {
   }
 }
 
-// JSON holds nothing but UTF-8: a name that is not is refused before the fit and not after it.
+// JSON must be UTF-8. A name that is not is refused before the fit.
 TEST_F(Program, NamesThatAreNotUtf8AreRefused) {
   std::string project = ReadFile(project_);
   const std::string urdf = SourceFile("tests/robots/arm6.urdf").string();

@@ -38,7 +38,7 @@ TEST_F(Program, CalibrateWritesAllResults) {
                 summary["rmse_3d_mm"][model].get<double>(), 1e-12);
     EXPECT_GT(summary["kfold"]["rmse_3d_mm"][model], 0.0);
   }
-  // Noise of 0.2 mm a coordinate is 0.35 mm in 3-D; the fit takes a part of it away.
+  // Noise of 0.2 mm a coordinate is 0.35 mm in 3-D, of which the fit removes a part.
   EXPECT_LT(summary["rmse_3d_mm"]["geometric"], 0.35);
   EXPECT_GT(summary["kfold"]["rmse_3d_mm"]["geometric"], 0.34);
 }
@@ -55,7 +55,7 @@ TEST_F(Program, SameInputSameFiles) {
   }
 }
 
-// A project whose URDF is the calibrated one has nothing left to calibrate: offsets vanish.
+// A project with the calibrated URDF has nothing left to calibrate: all offsets are near zero.
 TEST_F(Program, CalibratedUrdfNeedsNoCalibration) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   std::string project = ReadFile(project_);
@@ -70,8 +70,8 @@ TEST_F(Program, CalibratedUrdfNeedsNoCalibration) {
   const nlohmann::json summary = nlohmann::json::parse(ReadFile(json_file));
   const double before =
       nlohmann::json::parse(ReadFile(out_ + "/summary.json"))["rmse_3d_mm"]["geometric"];
-  // Uncalibrated now means with the calibrated URDF: as good as the calibration was, but for marker
-  // positions refitted.
+  // Uncalibrated now means with the calibrated URDF. The error is that of the calibration, with
+  // refitted marker positions.
   EXPECT_LT(summary["rmse_3d_mm"]["uncalibrated"], 1.05 * before);
 }
 
@@ -111,7 +111,7 @@ TEST_F(Program, JsonCanGoToStandardOutput) {
   EXPECT_EQ(nlohmann::json::parse(demo.out)["status"], "converged") << demo.err;
 }
 
-// Two joint columns exchanged: every number is fine, the whole is nonsense.
+// Two joint columns are exchanged: every number is plausible, but the whole is not.
 TEST_F(Program, NonsenseIsNotDeployed) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   std::string table = ReadFile(recording_);
@@ -123,23 +123,23 @@ TEST_F(Program, NonsenseIsNotDeployed) {
   EXPECT_NE(result.err.find("turret_joint and elbow_joint: their positions are exchanged"),
             std::string::npos)
       << result.err;
-  // What the mistake does to the fit is not said beside it.
+  // The effect of the mistake on the fit is not reported as well.
   EXPECT_EQ(result.err.find("does not explain this recording"), std::string::npos) << result.err;
   EXPECT_EQ(nlohmann::json::parse(ReadFile(out_ + "/summary.json"))["status"], "implausible");
-  // Neither new results nor those of the run before.
+  // Neither new results nor those of the run before may remain.
   for (const char* file : {"arm6_calibrated.urdf", "calibration.yaml", "offsets.xacro"}) {
     EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(out_) / file)) << file;
   }
 }
 
-/// Writes a table of the arm of the fixture.
+/// Writes a table of the fixture's arm.
 std::string WriteTable(const ScratchFolder& scratch, const Project& project,
                        const Recording& table) {
   WritePostureTable(scratch.path() / "table.csv", table, project.tree);
   return (scratch.path() / "table.csv").string();
 }
 
-// No gear is made so badly: the column has another unit or another gear.
+// No gear is made so badly, so the column has another unit or is for another gear.
 TEST_F(Program, AWrongGainInATableIsNamedAndCorrectedOnRequest) {
   Recording table = MakeSyntheticRecording(model_, truth_, {.postures = 40, .seed = 5});
   table.q.col(Coordinate("elbow_joint")) *= 1.02;
@@ -154,12 +154,11 @@ TEST_F(Program, AWrongGainInATableIsNamedAndCorrectedOnRequest) {
   EXPECT_EQ(Calibrate(project_, file, accepted + kFewFolds).exit_code, 0) << accepted;
 }
 
-// In the fit, five postures err by a third of what they do where they are left out.
-// No residual shows a wrong scale of the cameras; noise that all markers of a body share is no
+// A wrong scale of the cameras shows in no residual. Noise that all markers of a body share is no
 // fault with a name.
 TEST_F(Program, AVerdictSaysWhatItRestsOn) {
   Random random(1);
-  Eigen::VectorXd truth = truth_;  // whose links tell how far they err themselves
+  Eigen::VectorXd truth = truth_;  // its links show how large their own errors are
   for (int i = 0; i < model_.parameter_count(); ++i) {
     const Parameter& parameter = model_.parameters[static_cast<std::size_t>(i)];
     const bool length = parameter.joint >= 0 && GroupOf(parameter.kind) == PriorGroup::kLengths;
@@ -170,7 +169,7 @@ TEST_F(Program, AVerdictSaysWhatItRestsOn) {
     return Calibrate(of_project, WriteTable(scratch_, arm_, recording), "--kfold 0").out;
   };
   const std::string scale = "The scale of the cameras is taken as right";
-  const std::string told = said(project_);  // by the travel of the rail
+  const std::string told = said(project_);  // the travel of the rail tells the scale
   EXPECT_EQ(told.find(scale), std::string::npos) << told;
   std::string text = ReadFile(project_);
   text.replace(text.find("arm6.urdf"), 9, SourceFile("tests/robots/arm6.urdf").string());
@@ -194,6 +193,7 @@ TEST_F(Program, AVerdictSaysWhatItRestsOn) {
   EXPECT_NE(swinging.find("of a body as a whole 0."), std::string::npos) << swinging;
 }
 
+// In the fit, so few postures err by a third of their error when they are held out.
 TEST_F(Program, FewPosturesAreJudgedWhereTheyAreLeftOut) {
   const std::string file = WriteTable(
       scratch_, arm_, MakeSyntheticRecording(model_, truth_, {.postures = 6, .seed = 5}));
@@ -203,7 +203,7 @@ TEST_F(Program, FewPosturesAreJudgedWhereTheyAreLeftOut) {
   EXPECT_NE(result.out.find("6-fold RMSE"), std::string::npos) << result.out;
 }
 
-// Just as many equations as the arm needs: without some of the postures they are too few.
+// There are just as many equations as the arm needs. Without some postures, there are too few.
 TEST_F(Program, FoldsThatNobodyAskedForAreLeftOutWhereTheyAreTooSmall) {
   const int unknowns =
       static_cast<int>(FindBaseParameters(model_, arm_.identifiability).kept.size());
@@ -259,8 +259,8 @@ TEST_F(Program, ARobotWithoutLegsHasNoTableOfLegs) {
   EXPECT_EQ(text.find("leg at the waist"), std::string::npos) << text;
 }
 
-// A joint that rests while others are measured looks frozen where these are wrong: without their
-// postures, all is well.
+// A joint that rests while others are measured seems frozen if those are wrong. Without their
+// postures, the joint is fine.
 TEST_F(Program, AJointAtRestIsNotCalledFrozenForAnothersSign) {
   const auto coordinate = [&](const char* name) {
     return arm_.tree.joints[static_cast<std::size_t>(FindJoint(arm_.tree, name))].coordinate;
@@ -287,7 +287,7 @@ TEST_F(Program, AJointAtRestIsNotCalledFrozenForAnothersSign) {
   EXPECT_EQ(Calibrate(project_, table, "--accept sign:elbow_joint --kfold 3").exit_code, 0);
 }
 
-// What a wrong scale of the cameras changes most is the way of a sliding joint.
+// A wrong scale of the cameras changes the travel of a sliding joint most.
 TEST_F(Program, AGainOfASlidingJointMayBeTheScaleOfTheCameras) {
   Recording recording = MakeSyntheticRecording(model_, truth_, {.postures = 40, .seed = 4});
   recording.markers *= 1.01;
@@ -297,7 +297,7 @@ TEST_F(Program, AGainOfASlidingJointMayBeTheScaleOfTheCameras) {
   EXPECT_EQ(result.exit_code, 4) << result.out << result.err;
   EXPECT_NE(result.out.find("the cameras"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("or those of rail_joint 0.990"), std::string::npos) << result.out;
-  // Its long way tells the scale far better than the lengths of links do.
+  // Its long travel tells the scale far better than the lengths of links.
   const std::string name = "--accept scale=";
   ASSERT_NE(result.out.find(name), std::string::npos) << result.out;
   EXPECT_NEAR(std::stod(result.out.substr(result.out.find(name) + name.size())), 1.01, 3e-4);

@@ -42,7 +42,8 @@ TEST_F(Program, CheckNamesTheJointThatMovedAndEndsWithFour) {
   EXPECT_LT(json["rmse_3d_mm"]["updated"], json["rmse_3d_mm"]["calibrated"]);
 }
 
-// The last joint's zero is where its markers are; three that were glued anew look otherwise.
+// Markers on the last link determine the zero of its joint. Three markers that are glued anew seem
+// to turn it.
 TEST_F(Program, CheckTellsTheLastJointByMarkersThatStayed) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const std::string file = (scratch_.path() / "check.json").string();
@@ -80,7 +81,7 @@ TEST_F(Program, CheckTellsTheLastJointByMarkersThatStayed) {
   EXPECT_EQ(json["not_told"], nlohmann::json({"flange_joint"}));
 }
 
-// The project was corrected since: the markers are where they were all the same.
+// The project was corrected since then, but the markers have not moved.
 TEST_F(Program, CheckKnowsMarkersThatTheProjectNowHasElsewhere) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const std::string table =
@@ -102,14 +103,14 @@ TEST_F(Program, CheckKnowsMarkersThatTheProjectNowHasElsewhere) {
   }
 }
 
-// Of four postures of one marker, no joint is certain at this level; but the calibration does not
-// hold.
+// Four postures of one marker do not tell the joint at this level of confidence, but they tell that
+// the calibration no longer holds.
 TEST_F(Program, CheckSaysChangedWhereTooFewPosturesTellTheJoint) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   Eigen::VectorXd truth = truth_;
   truth[FindParameter(model_.parameters, "elbow_joint.theta")] += 0.05;
   Recording few = MakeSyntheticRecording(model_, truth, {.postures = 4, .seed = 5});
-  const int seen = few.marker_count() - 1;  // on the hand
+  const int seen = few.marker_count() - 1;  // the last one is on the hand
   for (int m = 0; m < seen; ++m) few.markers.middleCols(3 * m, 3).setConstant(std::nan(""));
   const std::filesystem::path table = scratch_.path() / "few.csv";
   WritePostureTable(table, few, arm_.tree);
@@ -122,7 +123,7 @@ TEST_F(Program, CheckSaysChangedWhereTooFewPosturesTellTheJoint) {
   EXPECT_EQ(nlohmann::json::parse(ReadFile(file))["status"], "changed");
 }
 
-// No joint that has moved explains these: "unchanged" would be the worst of answers.
+// No moved joint explains these recordings. "unchanged" would be the worst answer.
 TEST_F(Program, CheckAndValidateSayWhatIsWrongWithARecording) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const int elbow = Coordinate("elbow_joint");
@@ -157,7 +158,7 @@ TEST_F(Program, CheckAndValidateSayWhatIsWrongWithARecording) {
   EXPECT_EQ(status(), "implausible");
 }
 
-// One bad posture of twelve.
+// One of twelve postures is wrong.
 TEST_F(Program, CheckNamesNoJointBesideErrorsThatNoneExplains) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const int elbow = Coordinate("elbow_joint");
@@ -178,7 +179,7 @@ TEST_F(Program, CheckNamesNoJointBesideErrorsThatNoneExplains) {
   EXPECT_TRUE(json["alternatives"].empty());
 }
 
-// The gain of a joint and the scale of the cameras look like several joints that moved.
+// The gain of a joint and the scale of the cameras look like several moved joints.
 TEST_F(Program, CheckNamesAGainAndAScale) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const int elbow = Coordinate("elbow_joint");
@@ -254,7 +255,7 @@ TEST_F(ArmProgram, DiagnosesTablesOfATrackerInSeveralFiles) {
   EXPECT_FALSE(json["candidates"].empty());
 }
 
-// A gear is a share; the turn of a slide about its axis is no offset of this joint.
+// A gear is a share. The turn of a sliding joint about its axis is not its offset.
 TEST_F(ArmProgram, EstimatesHaveTheirUnits) {
   Eigen::MatrixXd shown = q_;
   shown.col(Coordinate("elbow_joint")) *= 0.997;
@@ -269,7 +270,7 @@ TEST_F(ArmProgram, EstimatesHaveTheirUnits) {
   EXPECT_EQ(found.out.find("rail_joint.theta"), std::string::npos) << found.out;
 }
 
-// What calibrate was told to correct is no cause.
+// A correction that `calibrate` was told to make is not named as a cause.
 TEST_F(ArmProgram, DiagnosesWhatCalibrateCorrected) {
   const std::string project = (folder_.path() / "project.yaml").string();
   const auto diagnose = [&](const Eigen::MatrixXd& q, const std::string& name,

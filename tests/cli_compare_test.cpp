@@ -36,7 +36,7 @@ TEST_F(Program, CompareNamesTheJointThatMoved) {
   EXPECT_EQ(json["with_covariance"], true);
   EXPECT_EQ(json["joints"][0]["joint"], "elbow_joint");
   EXPECT_TRUE(json["joints"][0]["or_markers"].empty());
-  // The one on the wrist is alone, which tells nothing; the others stayed.
+  // The single marker on the wrist tells nothing. The others have not moved.
   ASSERT_EQ(json["markers"].size(), 3u);
   for (const nlohmann::json& link : json["markers"]) EXPECT_EQ(link["same"], true) << link;
   EXPECT_NE(result.out.find("Markers: on 3 of 3 links all are where they were"), std::string::npos);
@@ -52,7 +52,7 @@ TEST_F(Program, CompareNamesTheJointThatMoved) {
   EXPECT_GT(theta["interval_95"][1], theta["difference"]);
   EXPECT_EQ(theta["significant"], true);
   EXPECT_FALSE(json["not_compared"].empty());
-  // Of the parameters of the joint, the one that changed.
+  // Of the joint's parameters, the one that changed is marked.
   const std::size_t mark = result.out.find("* moved");
   ASSERT_NE(mark, std::string::npos);
   EXPECT_EQ(result.out.find(" moved", mark + 7), std::string::npos) << result.out;
@@ -97,7 +97,7 @@ TEST_F(Program, CompareRefusesOtherRobotsAndFoldersWithoutResult) {
   refused(out_ + " " + later, {"covariance.csv:2", "another calibration"});
 }
 
-// The files of a recording folder are inputs, each of them.
+// Each file of a recording folder is an input.
 TEST_F(Program, NoCommandReplacesTheFilesOfARecording) {
   const Project project = ReadProject(SourceFile("tests/robots/mini_humanoid_project.yaml"));
   for (const char* name : {"a.tsv", "a.csv"}) scratch_.Write(name, "x\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How numbers with an uncertainty are printed, and how warnings are joined.
+// Formatting of numbers with uncertainties, and grouping of warnings.
 
 #include <cmath>
 #include <limits>
@@ -18,7 +18,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Figures, StandardDeviationsHaveTwoSignificantDigits) {
   EXPECT_EQ(RoundedSd(0.0123), "0.012");
-  EXPECT_EQ(RoundedSd(0.0996), "0.10");  // rounding makes it a digit longer
+  EXPECT_EQ(RoundedSd(0.0996), "0.10");  // rounding adds a digit
   EXPECT_EQ(RoundedSd(0.004), "0.0040");
   EXPECT_EQ(RoundedSd(1.0), "1.0");
   EXPECT_EQ(RoundedSd(12.3), "12");
@@ -33,7 +33,7 @@ TEST(Figures, StandardDeviationsHaveTwoSignificantDigits) {
 TEST(Figures, EstimatesEndWhereTheirStandardDeviationEnds) {
   EXPECT_EQ(RoundedTo(-2.34567, 0.0123), "-2.346");
   EXPECT_EQ(RoundedTo(2.0, 0.0123), "2.000");
-  EXPECT_EQ(RoundedTo(-0.0001, 0.0123), "0.000");  // no minus sign before nothing
+  EXPECT_EQ(RoundedTo(-0.0001, 0.0123), "0.000");  // zero has no minus sign
   EXPECT_EQ(RoundedTo(17.4, 12.3), "17");
   EXPECT_EQ(RoundedTo(98765.0, 1234.0), "98800");
   EXPECT_EQ(RoundedTo(1.5e-11, 1.234e-12), "0.000000000");
@@ -81,17 +81,17 @@ TEST(WarningGroups, TheNameOfAFileMayHaveBlanks) {
                            "day 2/arm A-C.csv:7: the row comes twice"}),
             std::vector<std::string>{
                 "day 2/arm A-B.csv:45: the row comes twice (likewise day 2/arm A-C.csv:7)"});
-  // In mid-sentence as well.
+  // The place may be in the middle of the sentence.
   EXPECT_EQ(GroupWarnings({"left out: hand_x in day 2/arm A-B.csv:45 (9 mm)",
                            "left out: hand_x in day 3/arm A-C.csv:7 (8 mm)"}),
             std::vector<std::string>{"left out: hand_x in day 2/arm A-B.csv:45 (9 mm) (likewise "
                                      "day 3/arm A-C.csv:7)"});
-  // What is no file is read word by word.
+  // Words that are no file are compared one by one.
   EXPECT_EQ(GroupWarnings({"joint arm.left: it is late", "joint arm.right: it is late"}),
             std::vector<std::string>{"joint arm.left: it is late (likewise arm.right)"});
 }
 
-// A robot's names need have neither digits nor underscores.
+// Names in a robot need not have digits or underscores.
 TEST(WarningGroups, NamesWithDotsAndDashesAreNames) {
   EXPECT_EQ(GroupWarnings({"the axes of L.knee, L.ankle-pitch are no longer parallel (0.6 deg)",
                            "the axes of R.knee, R.ankle-pitch are no longer parallel (0.4 deg)"}),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The progress line on a terminal: a pseudo-terminal stands for standard error.
+// The progress line on a terminal. A pseudo-terminal replaces standard error.
 
 #include <chrono>
 #include <cstdlib>
@@ -16,7 +16,7 @@
 namespace elastocal::cli {
 namespace {
 
-/// Standard error of this process goes to a terminal of 40 columns as long as this lives.
+/// Redirects standard error of this process to a terminal of 40 columns while it lives.
 class Terminal {
  public:
   Terminal() : screen_(posix_openpt(O_RDWR | O_NOCTTY)), before_(dup(STDERR_FILENO)) {
@@ -37,7 +37,7 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  /// What was written since the last call.
+  /// The text that was written since the last call.
   std::string Read() const {
     std::string text(4096, '\0');
     fcntl(screen_, F_SETFL, O_NONBLOCK);
@@ -60,7 +60,7 @@ TEST(ProgressLine, IsErasedBeforeAnythingElseIsPrinted) {
   EXPECT_EQ(terminal.Read(), kErase + "trial 1/3");
   EraseProgressLine();
   EXPECT_EQ(terminal.Read(), kErase);
-  EraseProgressLine();  // nothing stands there
+  EraseProgressLine();  // there is no line to erase
   EXPECT_EQ(terminal.Read(), "");
   progress(2, 3);
   EXPECT_EQ(terminal.Read(), kErase + "trial 2/3");
@@ -83,7 +83,7 @@ TEST(ProgressLine, IsErasedWhereTheWorkEndsEarly) {
 TEST(ProgressLine, TellsTheTimeOfWorkWithoutSteps) {
   Terminal terminal;
   const ProgressLine line("fit of all models", false);
-  EXPECT_EQ(terminal.Read(), "");  // work of less than a second needs no line
+  EXPECT_EQ(terminal.Read(), "");  // work of less than a second shows no line
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   EXPECT_EQ(terminal.Read(), kErase + "fit of all models, 1 s");
 }

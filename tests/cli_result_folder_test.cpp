@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the readers of results make of damaged ones, and what the writers do not replace.
+// Damaged results are refused by their readers, and writers do not replace the files of others.
 
 #include <cstdlib>
 
@@ -26,7 +26,7 @@ std::string Replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
-// Alone, without the folder that it was in: nothing but the file itself tells.
+// Without its folder, only the file itself shows the damage.
 TEST_F(Program, ADamagedCalibrationIsRefusedByAllWhoReadIt) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const std::string good = ReadFile(out_ + "/calibration.yaml");
@@ -67,7 +67,7 @@ TEST_F(Program, ACalibrationOfUnknownJointsIsNotValidated) {
   };
   refused(Replaced(good, "name: elbow_joint.d", "name: elbow_joit.d"),
           {"changed.yaml:", "elbow_joit", "did you mean 'elbow_joint'"});
-  // Without the count that newer files have, a gap is still noticed.
+  // Older files lack the count. A gap is noticed all the same.
   std::string gap = good;
   gap.erase(gap.find("parameter_count"),
             gap.find('\n', gap.find("parameter_count")) - gap.find("parameter_count") + 1);
@@ -93,7 +93,7 @@ TEST_F(Program, FilesOfSomebodyElseAreNotReplaced) {
     ExpectBad(RunProgram("inspect " + project_ + " --json " + file), {name, "not replaced"});
     EXPECT_EQ(ReadFile(file), before);
   }
-  // Its own files are, and JSON that the user names is again and again.
+  // The run's own files are replaced, and so is JSON that the user names.
   EXPECT_EQ(Calibrate(project_, recording_, "--kfold 3 --json " + out_ + "/mine.json").exit_code,
             0);
   EXPECT_EQ(Calibrate(project_, recording_, "--kfold 3 --json " + out_ + "/mine.json").exit_code,
@@ -117,7 +117,7 @@ TEST_F(Program, AFolderOfTwoRunsIsRefusedByItsReaders) {
     ExpectBad(RunProgram("validate " + project_ + " --recording " + recording_ + " --calibration " +
                          folder),
               {name, "of two runs"});
-    // A run of the command that writes it puts the folder in order.
+    // Running the command that writes this folder again repairs it.
     EXPECT_EQ(RunProgram("calibrate " + project_ + " --recording " + recording_ + " -o " + folder +
                          kFewFolds)
                   .exit_code,
@@ -131,7 +131,7 @@ TEST_F(Program, AFullDiskLeavesTheEarlierResults) {
   const std::string page = ReadFile(out_ + "/report.html");
   const std::string urdf = ReadFile(out_ + "/arm6_calibrated.urdf");
   const std::string err = (scratch_.path() / "err").string();
-  // No file may be longer than 30 blocks: the page does not fit any more.
+  // Files are limited to 30 blocks, which is too short for the page.
   const std::string command = "ulimit -f 30; " + ProgramFile() + " calibrate " + project_ +
                               " --recording " + recording_ + " -o " + out_ + " 2> " + err +
                               " > /dev/null";
@@ -146,7 +146,7 @@ TEST_F(Program, AFullDiskLeavesTheEarlierResults) {
   EXPECT_EQ(WEXITSTATUS(std::system(full.c_str())), 3);
 }
 
-// A run that was killed before its commit has left a folder; the next run or reader takes it away.
+// A run that was killed before its commit leaves a folder, which the next run or reader removes.
 TEST_F(Program, WhatAKilledRunLeftIsRemoved) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const std::filesystem::path left = std::filesystem::path(out_) / ".elastocal-abcdef";
@@ -157,7 +157,7 @@ TEST_F(Program, WhatAKilledRunLeftIsRemoved) {
   EXPECT_FALSE(std::filesystem::exists(left));
 }
 
-// Paths are bytes; what is shown and written of them is UTF-8, and no command to the terminal.
+// Paths are bytes. They are shown and written as UTF-8, without terminal commands.
 TEST_F(Program, PathsThatAreNotUtf8AreShownAllTheSame) {
   const std::string table = scratch_.Write("caf\xe9\x1b[2J.csv", ReadFile(recording_));
   const std::string out = scratch_.path().string() + "/o\xff";

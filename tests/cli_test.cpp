@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program as its users run it: usage, and the commands with few tests of their own.
+// The program as its users run it: usage, and commands with few tests of their own.
 
 #include <cmath>
 
@@ -39,7 +39,7 @@ TEST_F(Program, AnOutputWithoutNameIsWrongUsage) {
   }
 }
 
-// Nothing of these reaches the project, which is not there.
+// All these are refused before the project is read, which does not exist.
 TEST_F(Program, NumbersHaveTheirRangesAndListsTheirWordsInAnyCase) {
   for (const std::string wrong :
        {"--move-s 0.05", "--rest-s 0.9", "--rest-s nan", "--zmp-margin-mm 1001",
@@ -59,7 +59,7 @@ TEST_F(Program, NumbersHaveTheirRangesAndListsTheirWordsInAnyCase) {
   EXPECT_EQ(RunProgram("plan no.yaml -o m.csv --kind sine --postures p.yaml").exit_code, 2);
 }
 
-// The option, what was found, what was expected.
+// The messages name the option, what was found, and what was expected.
 TEST_F(Program, WrongUsageIsSaidInTheProgramsOwnWords) {
   const std::string plan = "plan no.yaml --kind sine -o m.csv ";
   const std::vector<std::pair<std::string, std::string>> wrong = {
@@ -184,7 +184,7 @@ TEST_F(Program, DemoFindsTheTruth) {
   const std::size_t line = result.out.rfind('\n', at) + 1;
   ASSERT_EQ(std::sscanf(result.out.c_str() + line, " %d of %d", &inside, &count), 2);
   EXPECT_GT(count, 50);
-  EXPECT_GE(inside, 0.85 * count);  // 95 % but for the scatter of one robot, whose errors correlate
+  EXPECT_GE(inside, 0.85 * count);  // 95 %, less the scatter of one robot with correlated errors
   EXPECT_TRUE(std::filesystem::exists(out_ + "/talos_calibrated.urdf"));
 }
 

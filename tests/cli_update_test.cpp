@@ -38,7 +38,7 @@ TEST_F(Program, APriorMakesAFewPosturesEnough) {
     return std::nan("");
   };
   EXPECT_NEAR(offset(updated) - offset(out_), 5e-3, 5e-4);
-  // So does what is diagnosed: the same few postures without a prior leave another error.
+  // The diagnosis uses the prior too: without it, these few postures leave another error.
   const std::string few = (scratch_.path() / "few").string();
   RunProgram("calibrate " + project_ + " --recording " + today + " --kfold 0 -o " + few);
   const auto left = [](const std::string& folder) {
@@ -52,7 +52,7 @@ TEST_F(Program, APriorMakesAFewPosturesEnough) {
   EXPECT_EQ(alone.exit_code, 2) << "--days without --prior";
 }
 
-// Whatever it is called this time.
+// The name of the file does not matter.
 TEST_F(Program, APriorFromTheSameRecordingCountsTwice) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const std::string copy = (scratch_.path() / "copy.csv").string();
@@ -70,7 +70,7 @@ TEST_F(Program, APriorFromTheSameRecordingCountsTwice) {
   EXPECT_FALSE(twice(today));
 }
 
-/// Makes two entries of a covariance larger than their variances allow.
+/// Makes an entry of a covariance larger than the variances allow.
 void Damage(const std::filesystem::path& covariance, const std::string& a, const std::string& b) {
   std::istringstream file(ReadFile(covariance));
   std::string written, line;
@@ -90,7 +90,7 @@ void Damage(const std::filesystem::path& covariance, const std::string& a, const
   WriteFile(covariance, written);
 }
 
-// Also where it is that of markers, by which is asked whether they stayed.
+// This holds for covariances of markers too, which tell whether markers have stayed.
 TEST_F(Program, AnEarlierCalibrationOfNoCovarianceIsRefused) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const std::string today =
@@ -129,7 +129,7 @@ TEST_F(Program, AnUpdateThatPredictsWorseThanTheEarlierCalibrationSaysSo) {
   EXPECT_EQ(update.err.find("the update by"), std::string::npos) << update.err;
 }
 
-// Its errors count from another frame of the root link.
+// The prior's errors refer to another frame of the root link.
 TEST_F(Program, APriorWithAnotherGaugeIsRefused) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   std::string text = ReadFile(out_ + "/calibration.yaml");
@@ -150,7 +150,7 @@ TEST_F(Program, APriorWithAnotherGaugeIsRefused) {
   EXPECT_EQ(RunProgram(words + out_ + " --kfold 0 -o " + out_ + "2").exit_code, 0);
 }
 
-// The first joint of a limb shows against the markers of the bodies that carry the limb.
+// Markers on the bodies that carry a limb show the first joint of this limb.
 TEST_F(Program, FollowUpsTellTheZerosThatCheckTells) {
   std::string text = ReadFile(project_);
   const std::string urdf = "arm6.urdf";

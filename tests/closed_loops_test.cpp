@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closure of rods against MuJoCo, which closes the same loops by equality constraints.
+// Compares the closure of rods with MuJoCo, which closes the same loops by equality constraints.
 
 #include <array>
 #include <cstring>
@@ -22,14 +22,14 @@ std::string Numbers(const Eigen::VectorXd& v) {
   return text;
 }
 
-/// Thigh, shank, cross and foot of one leg by MuJoCo, its rods as bodies: on a crank's pin by a
-/// ball joint, or sliding out of a ball joint where there is an actuator, and their ends on the
-/// links by `connect`. An equality constraint holds each motor.
+/// MuJoCo's model of thigh, shank, cross and foot of a leg. A rod is a body that a ball joint holds
+/// to the crank's pin, or for an actuator one that slides out of a ball joint. `connect` joins its
+/// other end to the link. An equality constraint holds each motor.
 std::string LoopsXml(const RobotTree& tree, const std::string& side, const Linkage& knee,
                      const Linkage& ankle) {
   const std::string mass = R"(<inertial pos="0 0 0" mass="1" diaginertia="0.01 0.01 0.01"/>)";
   std::string equality;
-  // The rod lies along x of its body while the model is built; `connect` brings it where it ends.
+  // Initially the rod lies along x of its body. `connect` moves it to where it ends.
   const auto rod_body = [&](const Rod& rod, const Transform& T_here_anchor) {
     const std::string& name = rod.motor;
     equality +=
@@ -95,15 +95,15 @@ double* EqualityData(mjModel& model, const std::string& name) {
   return model.eq_data + mjNEQDATA * mj_name2id(&model, mjOBJ_EQUALITY, name.c_str());
 }
 
-/// MuJoCo takes the ends of a rod as where they are at first; they are the anchors.
+/// MuJoCo takes the initial places of the rods' ends. They must be the anchors.
 void ConnectRods(const Linkage& linkage, mjModel& model) {
   for (const Rod& rod : linkage.rods) {
     Eigen::Map<Eigen::Vector3d>(EqualityData(model, "end_" + rod.motor) + 3) = rod.anchor;
   }
 }
 
-/// Moves the motors to where they are to be, and lets the loops come to rest; positions of the
-/// joints of the names.
+/// Moves the motors to these positions and waits until the loops are at rest. Returns the positions
+/// of the named joints.
 std::vector<double> SettledPositions(mjModel& model, const std::map<std::string, double>& motors,
                                      const std::vector<std::string>& names) {
   const std::unique_ptr<mjData, decltype(&mj_deleteData)> data(mj_makeData(&model), &mj_deleteData);
@@ -123,7 +123,7 @@ std::vector<double> SettledPositions(mjModel& model, const std::map<std::string,
   return positions;
 }
 
-// MuJoCo's constraints are springs, which have no force at rest where there is no weight.
+// MuJoCo's constraints are springs. Without weights they have no force at rest.
 TEST_F(LinkedBiped, ClosesItsLoopsAsMujocoDoes) {
   Random random(11);
   const std::array<int, 2> which = {0, 1};  // left_knee, left_ankle

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two calibrations of a simulated robot, through their files: false alarms, detections, and whether
-// the joint that is named is the one that moved.
+// Comparison of two calibrations of a simulated robot, by their files: false alarms, detections,
+// and whether the named joint is the one that moved.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ class ComparisonOfCalibrations : public InventedArm {
  protected:
   static constexpr int kPairs = 40;
 
-  /// Each joint's range cut to this part of it: badly excited.
+  /// Reduces the range of each joint to this part, so that it is badly excited.
   void Narrow(double part) {
     for (Joint& joint : model_.tree.joints) {
       const double middle = 0.5 * (joint.limits.lower + joint.limits.upper);
@@ -38,7 +38,7 @@ class ComparisonOfCalibrations : public InventedArm {
     return estimate;
   }
 
-  /// Compares kPairs pairs between which the parameter (empty: none) changed by `change`.
+  /// Compares kPairs pairs. In each of them, the parameter (empty: none) changes by `change`.
   void CompareAll(int postures, const std::string& parameter, double change) {
     for (int pair = 0; pair < kPairs; ++pair) {
       const Eigen::VectorXd truth = Truth(pair, 2e-3);
@@ -68,7 +68,7 @@ class ComparisonOfCalibrations : public InventedArm {
   int found_ = 0, false_alarms_ = 0, covered_ = 0, intervals_ = 0;
 };
 
-// 5 % of 40 pairs are 2; 7 or more would have a chance of 0.3 %.
+// 2 (5 %) of 40 pairs are expected; the probability of 7 or more is 0.3 %.
 constexpr int kMostFalseAlarms = 6;
 
 TEST_F(ComparisonOfCalibrations, UnchangedRobotsAreSeldomCalledChanged) {
@@ -84,8 +84,8 @@ TEST_F(ComparisonOfCalibrations, TheJointThatMovedIsNamedAndNoOther) {
   EXPECT_GE(covered_, 0.94 * intervals_);
 }
 
-// Postures that hardly tell the joints apart: much of the change is taken for others'. That the
-// prior pulls is counted in, so they are not accused.
+// These postures hardly tell joints apart, so that much of the change is attributed to others. They
+// are not accused, because the test accounts for the pull of the prior.
 TEST_F(ComparisonOfCalibrations, BadlyExcitedJointsAreNotAccused) {
   Narrow(0.05);
   CompareAll(12, "elbow_joint.theta", 2.0 * kDegree);

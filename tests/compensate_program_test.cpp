@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command `compensate` as its users run it, and calibrations of another robot.
+// The command `compensate` as its users run it, also with calibrations of another robot.
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -87,8 +87,8 @@ TEST(ExecutionReport, ARobotThatFellHasNoInfiniteFigures) {
 }
 
 TEST_F(CalibratedTalos, AMotionThatWouldBreakALimitIsRefused) {
-  // At limits of a leg of six joints, which has none that could take over: the correction moves
-  // some beyond them.
+  // The joints are at their limits, and a leg of six joints has none to spare. Some corrections go
+  // beyond the limits.
   int refused = 0, named = 0;
   std::vector<std::pair<const Joint*, double>> limits;
   for (const char* name : {"leg_left_2_joint", "leg_left_5_joint", "leg_left_6_joint"}) {
@@ -134,7 +134,7 @@ TEST_F(CalibratedTalos, AMotionOfTheUsersIsNotReplaced) {
   EXPECT_EQ(ReadFile(output), text);
   std::filesystem::remove(output);
   EXPECT_EQ(Compensate(motion).exit_code, 0);
-  // Its own is replaced, also one of another motion.
+  // The command replaces its own output, also with that of another motion.
   scratch_.Write("plan.csv", MotionText(project_.tree, project_.motion.rest, 0.04));
   const std::string first = ReadFile(output);
   EXPECT_EQ(Compensate(motion).exit_code, 0);

@@ -18,8 +18,7 @@
 namespace elastocal {
 namespace {
 
-// Touches of a real TALOS: a flat gripper on a table, both feet on the
-// floor.
+// Touches of a real TALOS: a flat gripper on a table, with both feet on the floor.
 
 constexpr double kDegree = M_PI / 180.0;
 
@@ -48,7 +47,7 @@ TEST_F(TalosTable, TouchesThatAreLeftOutArePredicted) {
   ASSERT_EQ(run.observations.count(), 50);
   EXPECT_TRUE(run.deployable());
   const ObservationFigures& figures = run.calibrated.held_out.figures;
-  // docs/accuracy.md: 3.06 mm and 0.274 degrees; a change of less than 1 % is rounding.
+  // The figures are those of docs/accuracy.md. Differences below 1 % may come from rounding.
   EXPECT_NEAR(1e3 * figures.all.height, 3.06, 0.03);
   EXPECT_NEAR(figures.all.tilt() / kDegree, 0.274, 0.003);
   EXPECT_EQ(figures.by_plate[0].touches, 21);
@@ -93,11 +92,11 @@ TEST_F(TalosTable, EachSideAloneFindsTheComplianceOfTheHips) {
   }
 }
 
-// Every fourth touch is one of another day.
+// Every fourth touch stands for another day.
 TEST_F(TalosTable, AFewTouchesTellTheJointThatMoved) {
   const ScratchFolder folder;
   const std::string kElbow = "arm_right_4_joint";
-  // `only`: the one row of the right hand whose joint is off; -1: all.
+  // `only`: the single row of the right hand in which the joint is off, or -1 for all rows.
   const auto write = [&](bool other, const std::string& joint, double by, int only = -1) {
     std::vector<std::filesystem::path> tables;
     for (const std::filesystem::path& file : files_) {
@@ -136,12 +135,12 @@ TEST_F(TalosTable, AFewTouchesTellTheJointThatMoved) {
   ASSERT_EQ(moved.check.moved.size(), 1u);
   EXPECT_EQ(moved.check.moved[0].joint, "arm_right_4_joint");
   EXPECT_NEAR(moved.check.moved[0].changes[0].value, -2.0 * kDegree, 0.5 * kDegree);
-  // One touch speaks of it more than the others; that it is wrong is less likely all the same.
+  // One touch contributes more than the others. That the touch is wrong is still less likely.
   const ContactCheck shoulder =
       CheckContacts(project_, out, write(true, "arm_left_1_joint", 2.0 * kDegree));
   EXPECT_EQ(CheckStatus(shoulder), "moved");
   EXPECT_EQ(shoulder.check.moved.front().joint, "arm_left_1_joint");
-  // A wrist that was off in one touch alone.
+  // A wrist is off in one touch only.
   const ContactCheck one =
       CheckContacts(project_, out, write(true, "arm_right_6_joint", 3.0 * kDegree, 1));
   EXPECT_TRUE(one.check.changed());

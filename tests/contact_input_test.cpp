@@ -95,7 +95,7 @@ TEST_F(ObservationTableInput, SaysWhatIsWrong) {
              TableText(project_, 1).substr(TableText(project_, 1).find('\n') + 1));
       },
       {"all the same"});
-  // Near the zero posture the arms hang: the hands' x axes are level.
+  // Near the zero posture the arms hang, so that the hands' x axes are level.
   std::ofstream(file_) << fine;
   ExpectInputError(
       [&] {
@@ -119,7 +119,7 @@ TEST_F(ObservationTableInput, AMistypedSessionIsNamed) {
 }
 
 TEST_F(ObservationTableInput, RepeatedRowsAreNamed) {
-  const auto repeated = [](const ObservationTables& tables) {  // others are of limits
+  const auto repeated = [](const ObservationTables& tables) {  // without warnings of limits
     std::vector<std::string> found;
     for (const std::string& warning : tables.warnings) {
       if (warning.find("in every cell") != std::string::npos) found.push_back(warning);
@@ -139,13 +139,13 @@ TEST_F(ObservationTableInput, RepeatedRowsAreNamed) {
   EXPECT_EQ(repeated(Read(text + rows.substr(0, rows.find('\n') + 1))),
             std::vector<std::string>{file + ":8: this row repeats " + file +
                                      ":2 in every cell; it" + counts});
-  // One cell is another one.
+  // The rows differ in one cell.
   std::string other = rows;
   for (std::size_t at = 0; (at = other.find(",a\n", at)) != std::string::npos; ++at) {
     other[at + 1] = 'b';
   }
   EXPECT_TRUE(repeated(Read(text + other)).empty());
-  // Another file.
+  // The rows are in another file.
   const std::filesystem::path second = folder_.path() / "second.csv";
   std::ofstream(second) << text;
   std::ofstream(file_) << text;
@@ -156,7 +156,7 @@ TEST_F(ObservationTableInput, RepeatedRowsAreNamed) {
 }
 
 TEST_F(ObservationTableInput, APlateUpsideDownIsNamed) {
-  // The sole of a foot is level whatever the posture; as a plate, it is upright or upside down.
+  // The sole is level in any posture. As a plate, it is upright or upside down.
   const auto contact = [](const char* normal) {
     return std::string(
                "feet: [{link: left_sole_link}], plates: [{name: p, link: right_sole_link, ") +
@@ -201,7 +201,7 @@ TEST_F(ObservationTableInput, SessionsAreToldByCountsOfEncoders) {
   const auto session = [&](std::size_t i) { return tables.observations.all[i].effects; };
   EXPECT_EQ(session(1), std::vector<int>{0});  // -27 is 37 modulo 64
   EXPECT_EQ(session(2), std::vector<int>{1});
-  EXPECT_EQ(session(3), std::vector<int>{0});  // a whole turn of the other
+  EXPECT_EQ(session(3), std::vector<int>{0});  // a whole turn in the other column
 }
 
 TEST_F(ObservationTableInput, SessionsAreProposedWhereEncodersTellThem) {
@@ -217,7 +217,7 @@ TEST_F(ObservationTableInput, SessionsAreProposedWhereEncodersTellThem) {
     text += line.substr(0, line.size() - 1) + FormatNumber(step * (random.Index(4) + homed)) + "\n";
   }
   const char* const ignore = "recording: {ignore: [gripper]}\n";
-  const auto proposals = [](const ObservationTables& tables) {  // others are of limits
+  const auto proposals = [](const ObservationTables& tables) {  // without warnings of limits
     std::vector<std::string> found;
     for (const std::string& warning : tables.warnings) {
       if (warning.find("from_encoders") != std::string::npos) found.push_back(warning);

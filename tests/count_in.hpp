@@ -7,7 +7,7 @@
 
 namespace elastocal {
 
-/// Files and folders in a folder.
+/// Number of files and folders in a folder.
 inline std::ptrdiff_t CountIn(const std::filesystem::path& folder) {
   return std::distance(std::filesystem::directory_iterator(folder), {});
 }

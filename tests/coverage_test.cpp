@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the stated 95 % intervals of a calibration of the whole body hold the truth that often.
+// Checks that the 95 % intervals of a whole-body calibration contain the truth that often.
 
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@
 namespace elastocal {
 namespace {
 
-/// How many intervals there were, and how many hold the truth.
+/// Numbers of intervals, and of those that contain the truth.
 struct Coverage {
   int intervals = 0, hits = 0;
 
@@ -32,8 +32,8 @@ struct Coverage {
   double percent() const { return 100.0 * hits / intervals; }
 };
 
-/// A truth as the prior expects it: joints' errors are drawn from it anyway; of a compliance, never
-/// below zero, the absolute value of a draw.
+/// A truth drawn from the prior. Errors of joints already are. A compliance is never negative, so
+/// it is the absolute value of a draw.
 Eigen::VectorXd DrawFromPrior(const StandingHumanoid& robot, std::uint64_t seed) {
   const Prior prior;
   Eigen::VectorXd truth = robot.DrawTruth(seed);
@@ -46,7 +46,7 @@ Eigen::VectorXd DrawFromPrior(const StandingHumanoid& robot, std::uint64_t seed)
   return truth;
 }
 
-/// Both legs and one arm, to be done in a minute: each leg while the other one carries.
+/// Both legs and one arm, which take a minute. Each leg moves while the other one stands.
 StandingHumanoid LegsAndArm(int postures) {
   StandingHumanoid robot(postures);
   std::erase_if(robot.trials, [](const PlayedTrial& played) {
@@ -63,7 +63,7 @@ StandingHumanoid LegsAndArm(int postures) {
   return robot;
 }
 
-/// Errors of the ends of limbs beside those that were to be expected: sums of squares.
+/// Sums of the squared errors of the ends of limbs, and of the expected ones.
 struct Frames {
   double position = 0.0, expected_position = 0.0, attitude = 0.0, expected_attitude = 0.0;
 
@@ -96,7 +96,7 @@ Frames CompareFrames(const StandingHumanoid& robot, const Eigen::VectorXd& truth
   };
   Frames frames;
   const std::vector<FramePrecision> assessed = AssessFrames(result, recording, links);
-  EXPECT_EQ(assessed.size(), links.size() - 1);  // of the right arm nothing was recorded
+  EXPECT_EQ(assessed.size(), links.size() - 1);  // the right arm was not recorded
   for (const FramePrecision& frame : assessed) {
     constexpr int kEvery = 7;
     int count = 0;
@@ -114,10 +114,10 @@ Frames CompareFrames(const StandingHumanoid& robot, const Eigen::VectorXd& truth
   return frames;
 }
 
-/// Of the parameters of a robot's joints and legs, by what they are.
+/// Coverage of the intervals for a robot's joints and legs, by kind of parameter.
 struct Coverages {
   Coverage geometry, torsion, legs;
-  Coverage unsupported;  ///< held at nominal: intervals around it
+  Coverage unsupported;  ///< for parameters with the status unsupported
   Frames frames;
   int unsettled = 0;
 
@@ -157,8 +157,9 @@ void Print(const char* what, const Coverage& coverage) {
               coverage.intervals);
 }
 
-// Intervals of one calibration are correlated; over 50 truths their share scatters by less than a
-// per cent. Compliances end at zero, where half of an interval is empty: it covers a little more.
+// Intervals of one calibration are correlated. The share over 50 truths scatters by less than one
+// per cent. Compliances end at zero, where half of an interval is empty, so that they cover a
+// little more.
 TEST(Coverage, NinetyFivePercentIntervalsHoldTheTruth) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP()

@@ -20,7 +20,7 @@ inline Eigen::VectorXd AllResiduals(LeastSquaresProblem& problem, const Eigen::V
   return Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
-/// Their derivatives by all of x.
+/// Derivatives of all residuals with respect to all of x.
 inline Eigen::MatrixXd DenseJacobian(LeastSquaresProblem& problem, const Eigen::VectorXd& x) {
   problem.Evaluate(x, true);
   std::vector<int> start = {0};
@@ -43,7 +43,7 @@ inline Eigen::MatrixXd DenseJacobian(LeastSquaresProblem& problem, const Eigen::
   return J;
 }
 
-/// The same by central differences.
+/// The same derivatives by central differences.
 inline Eigen::MatrixXd DifferenceJacobian(LeastSquaresProblem& problem, const Eigen::VectorXd& x,
                                           double step) {
   Eigen::MatrixXd J;

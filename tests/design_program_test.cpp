@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands `design` and `assess` as their users run them.
+// The commands `design` and `assess` as their users run them.
 #include <chrono>
 #include <filesystem>
 
@@ -22,7 +22,7 @@ class DesignProgram : public testing::Test {
   std::string File(const std::string& name) const { return (scratch_.path() / name).string(); }
   std::string Talos() const { return SourceFile("models/talos/project.yaml").string(); }
 
-  /// The TALOS project with a text replaced.
+  /// The TALOS project with one text replaced.
   std::string Changed(const std::string& from, const std::string& to) {
     std::string text = ReadFile(Talos());
     const auto at = text.find(from);
@@ -59,7 +59,7 @@ TEST_F(DesignProgram, DesignsAndAssessesAndTellsTheTruthAboutBoth) {
   const auto summary = nlohmann::json::parse(ReadFile(File("postures_summary.json")));
   const auto found = nlohmann::json::parse(ReadFile(File("assessed.json")));
   const double index = summary["chains"][0]["index"];
-  // The file holds twelve digits.
+  // The file has twelve digits.
   EXPECT_NEAR(found["chains"][0]["o1"].get<double>(), index, 1e-6 * index);
   EXPECT_TRUE(found["chains"][0]["infeasible"].empty());
   EXPECT_GT(found["chains"][0]["efficiency"].get<double>(), 0.9);
@@ -137,7 +137,7 @@ TEST_F(DesignProgram, SaysAtOnceWhereItCannotWrite) {
   const ProgramResult result = RunProgram("design " + Talos() + " -o " + file + "/postures.yaml");
   EXPECT_EQ(result.exit_code, 3) << result.err;
   EXPECT_EQ(result.out, "");
-  // All chains take ten seconds and more.
+  // Designing all chains would take ten seconds and more.
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
 }
 
@@ -149,7 +149,7 @@ TEST_F(DesignProgram, AProjectWithoutDesignSaysSo) {
   EXPECT_NE(result.err.find("design"), std::string::npos);
 }
 
-// A stiff arm on a bench lays a plate of its own on a table: there are no feet, and no cameras.
+// A stiff arm on a bench touches a table with its own plate. There are no feet and no cameras.
 TEST_F(DesignProgram, AnArmWithoutFeetIsCalibratedByTouches) {
   const std::string project = scratch_.Write(
       "bench.yaml", "robot: {urdf: " + SourceFile("tests/robots/arm6.urdf").string() +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibration postures of the embedded humanoid: feasible as MuJoCo sees it, and as good as the
-// figures that are known of its leg.
+// Calibration postures of the embedded humanoid: MuJoCo confirms that they are feasible, and known
+// figures of the leg are reached.
 #include "elastocal/posture/design.hpp"
 
 #include <algorithm>
@@ -34,9 +34,9 @@ ErrorModel ChainModel(const std::string& name) {
                        ChainMarkers(Talos(), FindChain(name)));
 }
 
-/// Limits as MuJoCo sees them, from its own poses and torques.
+/// Checks the limits with MuJoCo's own poses and torques.
 void ExpectFeasibleInMujoco(const ChainDesign& design) {
-  constexpr double kTolerance = 1e-6;  // m, rad, share of the effort: what is promised
+  constexpr double kTolerance = 1e-6;  // m, rad, share of the effort: the promised accuracy
   const RobotTree& tree = Talos().tree;
   const MotionSetup& motion = Talos().motion;
   MujocoOracle mujoco(Talos().urdf, tree.links[0].name);
@@ -83,7 +83,7 @@ void ExpectFeasibleInMujoco(const ChainDesign& design) {
   }
 }
 
-/// By default a leg stays away from singular postures.
+/// By default, legs avoid singular postures.
 void ExpectDexterous(const ChainDesign& design) {
   const RobotTree& tree = Talos().tree;
   MovingChain chain(tree, design.setup.coordinates, Talos().motion.rest);
@@ -127,14 +127,14 @@ TEST_P(EachChain, IsDesignedFeasiblyOnBothSides) {
   ASSERT_EQ(mirrored.postures.size(), design.postures.size());
   ExpectFeasibleInMujoco(mirrored);
   ExpectDexterous(mirrored);
-  // Link masses and marker clusters of the two sides differ by less than a millimetre or so.
+  // Link masses and marker clusters of the two sides differ by at most a millimetre or so.
   EXPECT_NEAR(mirrored.index, design.index, 0.02 * design.index);
 }
 
 INSTANTIATE_TEST_SUITE_P(Talos, EachChain, testing::Values(0, 1, 2));
 
-/// The leg with joint limits and workspace alone and the paper's columns, of which figures are
-/// known.
+/// The leg with only joint limits and workspace, and with the paper's columns. Figures are known
+/// for it.
 class PlainLeg : public testing::Test {
  protected:
   PlainLeg()
@@ -146,7 +146,7 @@ class PlainLeg : public testing::Test {
           setup_.floor_z.reset();
           setup_.dexterity_share = 0.0;
           motion_.effort_share = 1e3;
-          for (int c : setup_.coordinates) {  // without the project's margin
+          for (int c : setup_.coordinates) {  // without the margin of the project
             const Joint& joint = model_.tree.joints[model_.tree.coordinate_joint[c]];
             motion_.lower[c] = joint.limits.lower;
             motion_.upper[c] = joint.limits.upper;
@@ -183,7 +183,7 @@ TEST_F(PlainLeg, NocpIsNearTheBoundForEverySeedAndAboveCocp) {
   const double least = *std::min_element(nocp.begin(), nocp.end());
   std::printf("bound %.4f; NOCP %.4f to %.4f; COCP median %.4f\n", bound, least,
               *std::max_element(nocp.begin(), nocp.end()), Median(cocp));
-  EXPECT_NEAR(bound, 0.8035, 0.002);  // a prototype's figure; ours may be loose by 0.2 %
+  EXPECT_NEAR(bound, 0.8035, 0.002);  // figure of a prototype; our bound may be loose by 0.2 %
   EXPECT_GT(least, 0.985 * bound);
   EXPECT_GE(least, Median(cocp));
 }

@@ -51,16 +51,16 @@ with tempfile.TemporaryDirectory() as folder:
     subprocess.run([sys.executable, SCRIPT, images, "-o", table], check=True)
     lines = table.read_text().splitlines()
     assert lines[0] == "frame,tag,corner,u,v" and len(lines) == 5, lines
-    for k, (x, y) in enumerate([(1, 9), (9, 9), (9, 1), (1, 1)]):  # from below left counterclockwise
+    for k, (x, y) in enumerate([(1, 9), (9, 9), (9, 1), (1, 1)]):  # counterclockwise from below left
         place = TO_PIXELS @ [x, y, 1.0]
         frame, name, corner, *pixels = lines[1 + k].split(",")
         assert (frame, name, corner) == ("f1", "7", str(k)), lines[1 + k]
         off = np.hypot(*(np.array(pixels, float) - place[:2] / place[2]))
-        assert off < 0.15, (lines[1 + k], off)  # px: a tenth is usual at such edges
+        assert off < 0.15, (lines[1 + k], off)  # px; at such edges, a tenth is usual
     said = subprocess.run([sys.executable, SCRIPT, images, "-o", table, "--tags", "8"], check=True, capture_output=True, text=True)
     assert len(table.read_text().splitlines()) == 1
     assert said.stderr.startswith("no tag of these in 1 images: f1.pgm"), said.stderr
-    # Two prints of one tag tell nothing; a bar across the tag, and nothing is found.
+    # Two prints of one tag are ambiguous. A bar across a tag hides it.
     grey = drawn(7)
     half = grey[::2, ::2]
     (images / "f2.pgm").write_bytes(b"P5\n%d %d\n255\n" % (WIDTH, HEIGHT // 2) + np.hstack([half, half]).tobytes())

@@ -12,12 +12,12 @@
 
 namespace elastocal {
 
-/// The draft of a robot of the repository, which takes seconds under the sanitizers.
+/// Drafts a robot of the repository. Under the sanitizers this takes seconds.
 inline ProjectDraft DraftFileAnew(const std::string& file) {
   return DraftProject(ReadFile(SourceFile(file)), file, {});
 }
 
-/// The same, once in a program.
+/// The same draft, made only once in a program.
 inline const ProjectDraft& DraftFile(const std::string& file) {
   static std::map<std::string, ProjectDraft> drafts;
   const auto found = drafts.find(file);
@@ -37,7 +37,7 @@ inline std::string RodXml(const std::string& name, const std::string& parent,
          "</joint>";
 }
 
-/// A pole with two arms of two rods each; `shape` is the geometry of the root.
+/// A pole with two arms of two rods each. The root has the geometry `shape`.
 inline std::string PoleUrdf(const std::string& shape, const std::string& mass,
                             const std::string& more = "") {
   return "<robot name='pole'><link name='pole'><inertial><mass value='" + mass +
@@ -48,7 +48,7 @@ inline std::string PoleUrdf(const std::string& shape, const std::string& mass,
          RodXml("r2", "r1", "0.2 0 0.3") + more + "</robot>";
 }
 
-/// The draft as its reader sees it.
+/// The draft as the reader of projects sees it.
 inline Project ReadBack(const ProjectDraft& draft, const ScratchFolder& folder) {
   folder.Write("robot.urdf", draft.urdf);
   return ReadProject(folder.Write("project.yaml", FormatDraft(draft, "robot.urdf")));

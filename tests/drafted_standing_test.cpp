@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots as `init` drafts them, in the plan and in MuJoCo where they stand freely: an invented
-// quadruped moves a leg while it stands on the balls of the other three, and an invented humanoid
-// whose hips share a motor moves one while it stands on the other.
+// Robots that `init` drafts, in plans and standing freely in MuJoCo. An invented quadruped moves a
+// leg while it stands on the balls of the other three. An invented humanoid, whose hips share a
+// motor, moves a leg while it stands on the other.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ class Quadruped : public testing::Test {
     const ProjectDraft draft = DraftProject(ReadFile(SourceFile(file)), file, {});
     folder_.Write("robot.urdf", draft.urdf);
     project_ = ReadProject(folder_.Write("project.yaml", FormatDraft(draft, "robot.urdf")));
-    // The foot of a leg goes up by 0.1 m and to the side.
+    // The foot of a leg moves up by 0.1 m and to the side.
     const ChainSetup& setup = project_.motion.chains[0];
     Eigen::VectorXd q = project_.motion.rest;
     q[setup.coordinates[0]] += 0.15;
@@ -47,7 +47,7 @@ TEST_F(Quadruped, LiftsAFootOverTheMiddleOfTheOthers) {
   ASSERT_TRUE(plan_.left_out.empty()) << plan_.left_out[0];
   EXPECT_TRUE(plan_.broken().empty());
   ASSERT_EQ(plan_.planned[0].visits.size(), 1u);
-  // At rest on three feet the zero-moment point is in their middle.
+  // At rest on three feet, the zero-moment point is in the middle of these feet.
   const Visit& visit = plan_.planned[0].visits[0];
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   const Eigen::VectorXd q =
@@ -65,7 +65,7 @@ TEST_F(Quadruped, LiftsAFootOverTheMiddleOfTheOthers) {
             balls[0].z() + 0.05);
 }
 
-/// What inertial unit and feet measure of the robot at rest on all its feet, the root link leaning.
+/// What inertial unit and feet measure if the robot rests on all feet and its root link leans.
 StandingSense SenseAtRest(const StandingRobot& robot, double lean) {
   StandingSense sense;
   sense.R_world_root = RotX(lean).linear();
@@ -95,8 +95,8 @@ TEST_F(Quadruped, ItsStabiliserKnowsTheFloorUnderItsBalls) {
     EXPECT_LT((q - robot->rest).cwiseAbs().maxCoeff(), 1e-6);
     corrected = leaning.Correct(robot->rest, support, SenseAtRest(*robot, 0.02), 0.01);
   }
-  // It turns against the lean: by the corrected joints the floor is turned about x as the root
-  // link has to be turned back.
+  // The correction turns against the lean. Seen from the root link, the corrected joints turn the
+  // floor about x as the root link must turn back.
   std::vector<Eigen::Vector3d> balls;
   const std::vector<Transform> T_root_link = LinkTransforms(robot->tree, corrected);
   for (const int link : support) balls.emplace_back(T_root_link[Size(link)].translation());
@@ -106,8 +106,8 @@ TEST_F(Quadruped, ItsStabiliserKnowsTheFloorUnderItsBalls) {
   EXPECT_NEAR(leaning.turn().x(), -turn.x(), 2e-3);
 }
 
-// A leg that hangs straight down: upright, the root link is too low for the foot or too high for
-// the other legs.
+// The leg hangs straight down. If the root link is upright, it is too low for this foot or too high
+// for the other legs.
 TEST_F(Quadruped, VisitsPosturesForWhichOneHeightIsLeft) {
   const ChainSetup& setup = project_.motion.chains[0];
   Eigen::VectorXd q = project_.motion.rest;
@@ -117,7 +117,7 @@ TEST_F(Quadruped, VisitsPosturesForWhichOneHeightIsLeft) {
   EXPECT_TRUE(plan.broken().empty());
 }
 
-// Postures keep it, and what the standing legs do for the balance is said.
+// All postures keep the range. What the standing legs need for balance beyond it is reported.
 TEST_F(Quadruped, SaysWhichJointLeavesTheRangeThatIsAskedFor) {
   EXPECT_TRUE(plan_.beyond_ranges.empty()) << plan_.beyond_ranges[0];
   const ChainSetup& setup = project_.motion.chains[0];
@@ -139,7 +139,7 @@ TEST_F(Quadruped, RobotsWithErrorsStandThrough) {
     EXPECT_LT(trial.run.largest_lean, 0.06) << trial.seed;
     EXPECT_GT(trial.run.largest_shift, 1e-4) << trial.seed;  // the stabiliser works
   }
-  // Where nothing rubs, feet slide apart.
+  // Without friction, feet slide apart.
   MotionTrialOptions ice{.robots = 1};
   ice.floor_friction = 1e-4;
   EXPECT_FALSE(TryMotion(project_, plan_.whole.motion, ice)[0].run.stood);
@@ -155,7 +155,7 @@ TEST_F(Quadruped, IsRecordedWhileItStandsOnThreeFeet) {
   EXPECT_TRUE(played.markers.allFinite());
   EXPECT_TRUE(played.encoders.allFinite() && played.torques.allFinite());
   ASSERT_EQ(played.T_camera_waist.size(), static_cast<std::size_t>(played.frame_count()));
-  // The stabiliser has corrected the legs.
+  // The stabiliser must have corrected the legs.
   const VirtualExperiment& experiment = simulation.experiment;
   const TrueMotion uncorrected =
       PlayMotion(experiment.robot, experiment.trials[0].support, experiment.trials[0].motion,
@@ -184,7 +184,7 @@ TEST_F(Quadruped, CommandsAreNotCorrected) {
                    {"project.yaml", "front_left_foot", "ball"});
 }
 
-/// The small humanoid, with stronger motors: its own cannot carry it on one leg.
+/// The small humanoid with stronger motors. Its own motors cannot carry it on one leg.
 class SharedHips : public testing::Test {
  protected:
   static std::string Urdf(double strength) {
@@ -223,8 +223,8 @@ TEST_F(SharedHips, OfWeakMotorsDoNotStand) {
   EXPECT_NE(Draft(0.1).held_because.find("before its gear"), std::string::npos);
 }
 
-// The axes of these hips are not those of the ankles, so that each place of the root link asks for
-// another angle of the shared motor.
+// The hips' axes differ from the ankles', so that each place of the root link needs another angle
+// of the shared motor.
 TEST_F(SharedHips, KeepBothFeetFlatWhereverTheRootIs) {
   ReadDraft();
   const auto robot = StandProjectRobot(project_, {});
@@ -241,7 +241,7 @@ TEST_F(SharedHips, KeepBothFeetFlatWhereverTheRootIs) {
   EXPECT_LT(std::abs(pose.q[shared] - robot->rest[shared]), 1e-2);
 }
 
-// The shared motor pitches the waist, against which hips bend whose knees are straight.
+// The shared motor pitches the waist. Hips then bend against it even with straight knees.
 TEST_F(SharedHips, HaveKneesThatAreNotTheirMostBentJoints) {
   ReadDraft();
   const auto robot = StandProjectRobot(project_, {});
@@ -286,7 +286,7 @@ TEST_F(SharedHips, MoveTheirMotorOnOneLegAndStandInMujoco) {
   }
 }
 
-/// A joint of an invented robot and the link that it carries, which weighs 2 kg.
+/// A joint of an invented robot, and the link that it carries, with a mass of 2 kg.
 std::string JointXml(const std::string& name, const std::string& parent, const std::string& place,
                      const std::string& axis, const std::string& range,
                      const std::string& shape = "") {
@@ -298,8 +298,8 @@ std::string JointXml(const std::string& name, const std::string& parent, const s
          "'/><limit " + range + " effort='150' velocity='10'/></joint>\n";
 }
 
-/// A robot whose root link is its trunk. A waist joint carries both legs, or they are on the trunk;
-/// its feet roll or do not.
+/// A robot whose root link is its trunk. Both legs are on a waist joint, or else on the trunk. Its
+/// ankles can roll, or cannot.
 std::string TrunkOnLegs(bool waist, bool feet_roll) {
   std::string urdf =
       "<robot name='below'><link name='trunk'><inertial><origin xyz='0 0 0.2'/><mass value='12'/>"
@@ -342,7 +342,7 @@ TEST(LegsBelowAWaist, StandAndTurnTheWaistAsFarAsTheHipsAllow) {
   folder.Write("robot.urdf", draft.urdf);
   const Project project =
       ReadProject(folder.Write("project.yaml", FormatDraft(draft, "robot.urdf")));
-  // Feet that stay where they are leave the waist what the hips can turn back, 0.5 rad.
+  // If the feet must not move, the waist can turn by as much as the hips can turn back, 0.5 rad.
   const int waist = project.tree.joints[Size(FindJoint(project.tree, "waist_joint"))].coordinate;
   EXPECT_GT(project.motion.upper[waist], 0.2);
   EXPECT_LT(project.motion.upper[waist], 0.5);
@@ -362,7 +362,7 @@ TEST(LegsBelowAWaist, StandAndTurnTheWaistAsFarAsTheHipsAllow) {
   }
 }
 
-// Without a joint that rolls the foot, the weight cannot be shifted with both soles flat.
+// If no joint rolls the foot, the weight cannot be shifted with both soles flat.
 TEST(Legs, WhoseFeetDoNotRollAreHeld) {
   const ProjectDraft draft = DraftProject(TrunkOnLegs(false, false), "below.urdf", {});
   EXPECT_FALSE(draft.soles.empty());

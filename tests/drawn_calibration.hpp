@@ -10,10 +10,10 @@
 
 namespace elastocal {
 
-/// A "calibration" with drawn errors on every joint parameter: nothing needs to be estimated here.
+/// A "calibration" with random errors of all joint parameters, for tests that need no estimate.
 inline CalibrationResult WithErrors(const RobotTree& tree, std::uint64_t seed) {
   using Kind = ParameterKind;
-  std::vector<Marker> markers;  // one on every link: all joints are in the model
+  std::vector<Marker> markers;  // one on every link, so that the model has all joints
   for (std::size_t i = 0; i < tree.links.size(); ++i) {
     markers.push_back({"m" + std::to_string(i), static_cast<int>(i), {0.1, 0.02, -0.03}});
   }

@@ -7,7 +7,7 @@
 namespace elastocal {
 namespace {
 
-/// What a fit says of the robot, for another one.
+/// What a fit tells another one about the robot.
 EarlierEstimate EarlierOf(const ObservedRobot& model, const ObservationFit& fit) {
   EarlierEstimate earlier;
   const std::vector<int> parameters = ParameterOfUnknown(model);
@@ -17,7 +17,7 @@ EarlierEstimate EarlierOf(const ObservedRobot& model, const ObservationFit& fit)
   return earlier;
 }
 
-/// A biped of rigid joints that touches a table so many times, with errors and noise.
+/// A biped with rigid joints, errors and noise, which touches a table.
 struct TouchingBiped {
   TouchingBiped(int touches, std::uint64_t seed)
       : random(seed),
@@ -39,7 +39,7 @@ TEST(EarlierObservations, AnEarlierFitAsThePriorIsAsGoodAsItsObservations) {
   const Observations& all = biped.seen;
   std::vector<int> first, then;
   for (int i = 0; i < all.posture_count(); ++i) (i < 40 ? first : then).push_back(i);
-  // All but the robot is known: a fit hands on nothing else.
+  // All but the robot is known, because a fit hands on nothing else.
   const ObservationFitOptions options{
       .freedom = {.mountings = false, .surroundings = false, .effects = false},
       .estimate_spread = false};
@@ -71,7 +71,7 @@ TEST(EarlierObservations, WhatTheDataSayOfTheRobotDoesNotDependOnThePrior) {
   const ObservationFit fit = EstimateObserved(model, seen, {}).fit;
   ObservedRobot again = model;
   again.earlier = EarlierOf(model, fit);
-  again.earlier.names.resize(20);  // of the others, priors by kind
+  again.earlier.names.resize(20);  // the others have priors by kind
   again.earlier.mean.conservativeResize(20);
   again.earlier.covariance.conservativeResize(20, 20);
   const Eigen::MatrixXd information = RobotInformation(model, seen, fit);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exported MJCF with springs, as MuJoCo plays it, against the elastic robot at run time.
+// Compares the exported MJCF with springs in MuJoCo with the elastic robot at run time.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -39,7 +39,7 @@ class ElasticMjcf : public testing::Test {
     legs_ = FindLegs(project_.tree, chains_);
   }
 
-  /// Compliances whose names begin so are taken away.
+  /// Removes the compliances whose names begin with this.
   void TakeAway(const std::string& beginning) {
     for (auto& [name, value] : stored_.joint_errors) {
       if (name.starts_with(beginning + ".compliance")) value = 0.0;
@@ -81,7 +81,7 @@ class ElasticMjcf : public testing::Test {
     return joint.multiplier * q[joint.coordinate] + joint.offset;
   }
 
-  /// Motors and joints at a posture.
+  /// Sets motors and joints to a posture.
   void Put(const mjModel& model, const Eigen::VectorXd& q, mjData& data) const {
     for (const Joint& joint : project_.tree.joints) {
       const int id = mj_name2id(&model, mjOBJ_JOINT, joint.name.c_str());
@@ -90,7 +90,7 @@ class ElasticMjcf : public testing::Test {
     }
   }
 
-  /// What the encoders show.
+  /// The positions that the encoders show.
   Eigen::VectorXd Encoders(const mjModel& model, const mjData& data) const {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(project_.tree.coordinate_count());
     for (std::size_t c = 0; c < project_.tree.coordinate_joint.size(); ++c) {
@@ -127,7 +127,7 @@ class ElasticMjcf : public testing::Test {
     return *std::ranges::find(legs_, name, &Leg::chain);
   }
 
-  /// The link that the last joint of a leg moves.
+  /// The link that a leg's last joint moves.
   int FootOf(const Leg& leg) const {
     return project_.tree.joints[static_cast<std::size_t>(leg.joints.back())].child_link;
   }
@@ -138,8 +138,8 @@ class ElasticMjcf : public testing::Test {
     Data data;
   };
 
-  /// The exported robot, whose left foot is welded to the floor where it is flat at `q`, under a
-  /// force that pushes up the sole of the right leg, N.
+  /// The exported robot under a force [N] that pushes the sole of the right leg upwards. Its left
+  /// foot is welded to the floor where it is flat at `q`.
   Played PlayOnLeftFoot(const Eigen::VectorXd& q, double push = 0.0) const {
     const Leg& leg = FindLeg("leg_left");
     const std::string foot = LinkName(FootOf(leg));
@@ -175,7 +175,7 @@ class ElasticMjcf : public testing::Test {
     return {std::move(model), std::move(data)};
   }
 
-  /// A force through the ankle of a leg, along the vertical.
+  /// Applies a vertical force through the ankle of a leg.
   void PushUp(const mjModel& model, const Leg& leg, double force, mjData& data) const {
     const int foot = mj_name2id(&model, mjOBJ_BODY, LinkName(FootOf(leg)).c_str());
     mj_kinematics(&model, &data);
@@ -187,8 +187,8 @@ class ElasticMjcf : public testing::Test {
     Eigen::Map<Eigen::Vector3d>(data.xfrc_applied + 6 * foot + 3) = lever.cross(up);
   }
 
-  /// Moments on the right leg about the origin of the root link, in its axes: of PushUp, and of the
-  /// leg's own weight.
+  /// Moments on the right leg about the origin of the root link, in its axes: that of PushUp, and
+  /// that of the leg's own weight.
   Eigen::Vector3d MomentOfFloor(const mjModel& model, double force, const mjData& data) const {
     const int foot = mj_name2id(&model, mjOBJ_BODY, LinkName(FootOf(FindLeg("leg_right"))).c_str());
     return MomentInRoot(model, data, data.xpos + 3 * foot, force);
@@ -208,8 +208,8 @@ class ElasticMjcf : public testing::Test {
     return T.linear().transpose() * lever.cross(Eigen::Vector3d(0, 0, up));
   }
 
-  /// Of the root link on the left foot, which is held to the floor, m and rad: by how much it gives
-  /// way, and how far MuJoCo has it from there.
+  /// The root link of a robot that stands on its left foot (m and rad): how far it gives way, and
+  /// how far MuJoCo's root link is from there.
   struct Stands {
     double deflection = 0.0, off = 0.0;
     double turn = 0.0, turned_off = 0.0;
@@ -227,7 +227,7 @@ class ElasticMjcf : public testing::Test {
     const StandingFeet feet = 1u << (&leg - legs_.data());
     elastic.Forward(encoders, Eigen::VectorXd(), feet);
     rigid.Forward(encoders, Eigen::VectorXd(), feet);
-    // Of the sole in the body of the foot.
+    // The sole in the frame of the foot's body.
     const Transform T_body_sole =
         project_.tree.links[static_cast<std::size_t>(FootOf(leg))].T_body_link.inverse() *
         project_.tree.links[static_cast<std::size_t>(leg.foot_link)].T_body_link;
@@ -247,19 +247,19 @@ class ElasticMjcf : public testing::Test {
   std::vector<Leg> legs_;
 };
 
-/// Largest share of the deflection by which it may be off. Both take loads of the deflected robot,
-/// ours of the first deflection.
+/// Largest error as a share of the deflection. Both models take loads of the deflected robot, ours
+/// those of the first deflection.
 constexpr double kShare = 1e-3;
-/// The springs of a leg are in the axes of its foot, which is inclined against the root link here
-/// by some tenths of a radian.
+/// The springs of a leg are in the axes of its foot, which is inclined to the root link by some
+/// tenths of a radian here.
 constexpr double kShareOnLeg = 0.03;
-/// The same of the turn there, most of which is that of joints.
+/// Largest error of the turn, most of which comes from joints.
 constexpr double kShareOfTurn = 4e-3;
-/// The spring of a sole bears all but the link of the foot in MuJoCo.
+/// In MuJoCo, the spring of a sole carries all but the link of the foot.
 constexpr double kShareOfFoot = 0.03;
 
 TEST_F(ElasticMjcf, HangsAsTheElasticModelDoes) {
-  TakeAway("leg_left");  // of legs as a whole, which a held root does not load
+  TakeAway("leg_left");  // whole legs, which a held root does not load
   TakeAway("leg_right");
   const Model model = Load(Export(UserModel{project_.tree}.Text(false)));
   Compensator elastic(MakeRuntimeModel(project_, stored_));
@@ -287,7 +287,7 @@ TEST_F(ElasticMjcf, HangsAsTheElasticModelDoes) {
 }
 
 TEST_F(ElasticMjcf, StandsOnOneFootAsTheElasticModelDoes) {
-  TakeAway("leg_right");  // which swings, and stretches in MuJoCo by its own weight
+  TakeAway("leg_right");  // it swings, and in MuJoCo its own weight stretches it
   const Stands stands = OnLeftFoot(Posture(7));
   EXPECT_GT(stands.deflection, 1e-2);
   EXPECT_LT(stands.off, kShareOnLeg * stands.deflection);
@@ -295,9 +295,9 @@ TEST_F(ElasticMjcf, StandsOnOneFootAsTheElasticModelDoes) {
   EXPECT_LT(stands.turned_off, kShareOfTurn * stands.turn);
 }
 
-// The leg weighs a sixth of the robot. While it hangs it is as long as the geometry has it, and
-// from there it gives way by the share of the weight that the floor bears, as much on the whole
-// weight as eq. 6 says. It turns as eq. 6 says on the whole weight.
+// The leg weighs a sixth of the robot. While it hangs, its length is that of the geometry. On the
+// floor, it gives way by the share of the weight that the floor carries: with the whole weight, as
+// much as eq. 6 says. Its turn is that of eq. 6 with the whole weight.
 TEST_F(ElasticMjcf, ALegGivesWayByItsShareOfTheWeight) {
   for (auto& [name, value] : stored_.joint_errors) value = 0.0;
   for (const char* along : {"x", "y", "z"}) {
@@ -321,7 +321,8 @@ TEST_F(ElasticMjcf, ALegGivesWayByItsShareOfTheWeight) {
     const Eigen::Vector3d floor = MomentOfFloor(*model, share * all, *data);
     const Eigen::Vector3d own = MomentOfOwnWeight(*model, *data);
     EXPECT_GT(own.norm(), 15.0);
-    // Of its own weight, all of it: at run time the share of it.
+    // MuJoCo adds the moment of the whole weight of the leg, the model at run time only a share of
+    // it.
     EXPECT_NEAR(position("leg_right_elastic_rx"), 1e-5 * (floor + own).x(),
                 0.04 * 1e-5 * own.norm());
     EXPECT_NEAR(position("leg_right_elastic_ry"), 1e-5 * (floor + own).y(),
@@ -329,7 +330,7 @@ TEST_F(ElasticMjcf, ALegGivesWayByItsShareOfTheWeight) {
   }
 }
 
-// It is below the ankle: how the leg is inclined does not matter.
+// The spring is below the ankle, so the leg's inclination does not matter.
 TEST_F(ElasticMjcf, ASoleSinksAsTheElasticModelDoes) {
   for (auto& [name, value] : stored_.joint_errors) {
     if (name.find(".compliance") != std::string::npos) value = 0.0;

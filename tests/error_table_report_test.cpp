@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the table of cross-validation errors is shown: the program's own sources, without its main.
+// The table of cross-validation errors as text. This test compiles the program's sources without
+// its main.
 
 #include "elastocal/cli/error_table_report.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Verdicts of the estimator: outliers, parameters without support, models side by side.
+// Verdicts of the estimator: outliers, unsupported parameters, and comparison of models.
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ TEST_F(LegEstimation, OutliersAreNamedAndTheRestIsLeftAlone) {
   const Recording clean = Record(truth_, 30);
   Recording recording = clean;
   recording.markers(4, 3 * 2 + 1) += 3e-3;  // 15 times the noise
-  recording.markers(17, 3 * 8) -= 0.5;      // a swapped label, say
+  recording.markers(17, 3 * 8) -= 0.5;      // for instance a swapped label
   recording.markers(17, 3 * 7) -= 0.5;
   const CalibrationResult result = Estimate(recording);
   ASSERT_EQ(result.outliers.size(), 3u);
@@ -72,7 +72,7 @@ TEST_F(LegEstimation, FaultsOfARecordingAreNamed) {
   EXPECT_EQ(of_gain[0].coordinate, coordinate);
   EXPECT_NEAR(of_gain[0].size, 0.02, 0.002);
   Recording offset = clean;
-  offset.q.col(coordinate).tail(19).array() += 0.02;  // between two of the postures tried
+  offset.q.col(coordinate).tail(19).array() += 0.02;  // between two of the postures that are tried
   const std::vector<RecordingFault> of_offset = FindRecordingFaults(Estimate(offset), offset, {});
   ASSERT_FALSE(of_offset.empty());
   EXPECT_EQ(of_offset[0].kind, FaultKind::kJointOffset);
@@ -83,8 +83,8 @@ TEST_F(LegEstimation, FaultsOfARecordingAreNamed) {
   EXPECT_EQ(text.find(model_.tree.joints[joint].name + ": its positions are off by"), 0u) << text;
 }
 
-// One clean recording in a hundred has an outlier named, also when the noise is estimated from few
-// residuals. Of 300, more than 9 would have a chance of one in a thousand.
+// In one clean recording in a hundred an outlier is named, even if few residuals tell the noise.
+// The probability of more than 9 in 300 is one in a thousand.
 TEST_F(LegEstimation, CleanRecordingsHaveOutliersAsRarelyAsPromised) {
   int with_outliers = 0;
   for (int seed = 0; seed < 300; ++seed) {
@@ -95,7 +95,8 @@ TEST_F(LegEstimation, CleanRecordingsHaveOutliersAsRarelyAsPromised) {
 }
 
 TEST_F(LegEstimation, ParametersWithoutSupportAreListed) {
-  // The ankle's roll stands still: its axis cannot be found, its marker positions absorb it.
+  // The ankle's roll joint stands still. Its axis is unknown, and its marker positions absorb its
+  // errors.
   Recording recording = Record(truth_, 30);
   ErrorModel still = model_;
   Eigen::MatrixXd& q = recording.q;
@@ -118,8 +119,8 @@ TEST_F(LegEstimation, ParametersWithoutSupportAreListed) {
   EXPECT_EQ(result.status[Find("leg_3.theta")], ParameterStatus::kEstimated);
 }
 
-// Ten parallel joints, eight of which stand still: each offset of the eight is uncertain, but their
-// sum is measured well. Holding all of them would throw the sum away.
+// Eight of ten parallel joints stand still. Each of their offsets is uncertain, but their sum is
+// measured well. If all were held, the sum would be lost.
 TEST(Support, WhatManyParametersShareIsNotHeldAsAWhole) {
   RobotTree tree = MakeRoot();
   for (int k = 0; k < 10; ++k) {
@@ -175,7 +176,8 @@ TEST_F(LegEstimation, GivenNoiseIsUsedAsItIs) {
   EXPECT_EQ(result.noise(0, NoiseSource::kMarker), 0.4e-3);
 }
 
-// Five degrees where half a degree is expected: the prior is widened, and the interval holds.
+// Offsets are five degrees instead of half a degree. The prior is widened, and the interval holds
+// the truth.
 TEST_F(LegEstimation, PriorIsWidenedForARobotFarFromNominal) {
   truth_[Find("leg_3.theta")] = 0.09;
   truth_[Find("leg_4.theta")] = -0.08;
@@ -217,8 +219,9 @@ TEST_F(LegEstimation, ModelsAreNestedAndJudgedOnTheSameData) {
   EXPECT_EQ(folds.metrics[2].observations, 30 * 9);
   EXPECT_EQ(folds.metrics_without_outliers[2].observations, 30 * 9 - 1);
   EXPECT_EQ(folds.not_predicted, 0);
-  EXPECT_GT(folds.metrics[2].maximum, 0.09);  // nothing is hidden
-  // Held-out errors: noise of 0.35 mm in 3-D and what the estimate adds; in-sample ones are less.
+  EXPECT_GT(folds.metrics[2].maximum, 0.09);  // the metrics hide nothing
+  // Held-out errors consist of noise (0.35 mm in 3-D) and the error of the estimate. In-sample
+  // errors are smaller.
   EXPECT_GT(folds.metrics_without_outliers[2].rmse_3d, comparison.metrics[2].rmse_3d);
   EXPECT_LT(folds.metrics_without_outliers[2].rmse_3d, 0.45e-3);
   const CrossValidation again =

@@ -14,10 +14,10 @@
 namespace elastocal {
 namespace {
 
-/// 90 touches in three sessions whose tables are 25 mm apart; the plates take turns.
+/// 90 touches in three sessions. Their tables are 25 mm apart, and the plates alternate.
 class ExchangedSessions : public testing::Test {
  protected:
-  static constexpr double kNoise = 0.5e-3;  // of heights, m
+  static constexpr double kNoise = 0.5e-3;  // noise of heights, m
 
   ExchangedSessions() : sound_(Touches(25e-3)) {}
 
@@ -25,7 +25,7 @@ class ExchangedSessions : public testing::Test {
     Random random(31);
     ObservedValues truth = RandomTruth(model_, 3, random);
     for (std::size_t e = 0; e < truth.effects.size(); ++e) {
-      const std::size_t session = e / 2;  // of two plates each
+      const std::size_t session = e / 2;  // each session has two plates
       truth.effects[e] << apart * static_cast<double>(session), 0.0, 0.0;
     }
     Observations touches = SimulateTouches(model_, truth, 90, 3, {kNoise, 1e-3, 1e-3}, random);
@@ -62,19 +62,19 @@ TEST_F(ExchangedSessions, AreFoundEach) {
       << run.wrong_rows;
 }
 
-// Labels of two days that say nothing: which half is right, they do not tell.
+// The labels of two days are useless: they do not tell which half is right.
 TEST_F(ExchangedSessions, AreFoundWhereHalfOfTwoDaysIs) {
   Observations mixed = sound_;
   std::set<int> of_other;
   for (std::size_t i = 0; i < mixed.all.size(); ++i) {
     int& effect = mixed.all[i].effects.front();
-    if (effect >= 4 || i / 6 % 2 == 0) continue;  // day c; every second round
+    if (effect >= 4 || i / 6 % 2 == 0) continue;  // not day c, and every second round only
     effect = (effect + 2) % 4;
     of_other.insert(mixed.all[i].posture);
   }
-  ASSERT_EQ(of_other.size(), 28u);  // of 60
+  ASSERT_EQ(of_other.size(), 28u);  // out of 60
   const Observations right = InOtherSessions(FindExchangedSessions(model_, mixed), mixed);
-  // Of each plate, either all are as they were, or all have the other day's name.
+  // For each plate, either all labels are as before, or all are those of the other day.
   std::map<int, std::set<bool>> same;
   for (std::size_t i = 0; i < right.all.size(); ++i) {
     if (sound_.all[i].effects.front() >= 4) continue;
@@ -84,9 +84,9 @@ TEST_F(ExchangedSessions, AreFoundWhereHalfOfTwoDaysIs) {
   for (const auto& [plate, ways] : same) EXPECT_EQ(ways.size(), 1u) << plate;
 }
 
-// One row among many is told by what it is off by in units of the noise: at three, one of a clean
-// table is as far off by chance; from fifteen on, Student's t with four degrees of freedom allows
-// none, and between it counts less.
+// A single row is judged by its error in units of the noise. At three, a row of a clean table may
+// err as much by chance. From fifteen on, Student's t with four degrees of freedom excludes it. In
+// between it has less weight.
 TEST_F(ExchangedSessions, ASingleRowIsLeftOutWhereNoiseDoesNotHideIt) {
   constexpr int kRow = 10;
   for (const double noises : {3.0, 6.0, 10.0, 15.0, 20.0}) {
@@ -105,7 +105,7 @@ TEST_F(ExchangedSessions, ASingleRowIsLeftOutWhereNoiseDoesNotHideIt) {
   }
 }
 
-// Neither noise nor touches in the air are rows of another session.
+// Noise and touches in the air must not be taken for rows of another session.
 TEST_F(ExchangedSessions, AreNoneInSoundTables) {
   EXPECT_TRUE(FindExchangedSessions(model_, sound_).empty());
   const auto others = [&](Observations air) {
@@ -127,7 +127,7 @@ TEST_F(ExchangedSessions, AreNoneInSoundTables) {
   std::vector<double> above(48, 0.0);
   for (const std::size_t i : {4u, 9u, 20u, 31u}) above[i] = random.Uniform(5e-3, 40e-3);
   EXPECT_EQ(found(above), 0u);
-  // A quarter of the touches, all as high, in both sessions, and in the first one alone.
+  // A quarter of the touches are equally high, first in both sessions, then only in the first one.
   std::fill(above.begin(), above.end(), 0.0);
   for (std::size_t i = 0; i < 48; i += 4) above[i + i / 4 % 4] = 25e-3;
   EXPECT_EQ(found(above), 0u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command `export` as its users run it: each of its formats, read back.
+// The command `export` as its users run it. The output in each format is read back.
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -22,7 +22,7 @@
 namespace elastocal {
 namespace {
 
-/// The nominal URDF with numbers added to the origins of its joints.
+/// The nominal URDF with these numbers added to the origins of its joints.
 std::string WithOrigins(const std::string& urdf,
                         const std::map<std::string, std::array<double, 6>>& added) {
   pugi::xml_document xml;
@@ -194,26 +194,27 @@ TEST_F(CalibratedTalos, MujocoTakesTheModelWithSpringsAndWithout) {
 }
 
 TEST_F(CalibratedTalos, HipsGetTheirStiffness) {
-  // Springs about y and x of the root link, and about the hip's joints, whose axes are z, x and y.
+  // The springs are about y and x of the root link and about the hip's joints, whose axes are z, x,
+  // y.
   for (auto& [name, value] : stored_.joint_errors) {
     if (name.find(".compliance") != std::string::npos) value = 0.0;
     if (name.ends_with("alpha") || name.ends_with("beta") || name.ends_with("gamma")) value = 0.0;
   }
   stored_.joint_errors["leg_left_1_joint.compliance_root_y"] = 1e-4;
   stored_.joint_errors["leg_left_3_joint.compliance_z"] = 3e-4;
-  stored_.joint_errors["leg_left_1_joint.compliance_z"] = 7e-4;  // about z: in neither
+  stored_.joint_errors["leg_left_1_joint.compliance_z"] = 7e-4;  // about z, which has no stiffness
   stored_.joint_errors["leg_right_2_joint.compliance_z"] = 5e-4;
   stored_.joint_errors["leg_right_1_joint.compliance_root_x"] = 5e-4;
   WriteCalibration(stored_);
   const std::string file = Export("flex_joints");
   const YAML::Node yaml = YAML::LoadFile(file);
-  constexpr double kZeroTurned = 1e-3;  // the zero posture is that of the drawn zeros
+  constexpr double kZeroTurned = 1e-3;  // the drawn zeros turn the zero posture
   EXPECT_NEAR(yaml["left_stiffness"][0].as<double>(), 2500.0, 2500.0 * kZeroTurned);
   EXPECT_NEAR(yaml["right_stiffness"][1].as<double>(), 1000.0, 1000.0 * kZeroTurned);
   EXPECT_GT(yaml["left_stiffness"][1].as<double>(), 1e6);
   EXPECT_FALSE(yaml["left_damping"]);
   EXPECT_NE(ReadFile(file).find("postures at rest tell no damping"), std::string::npos);
-  // sd of 10 %, independent: 1.96 sqrt(1e-5^2 + 3e-5^2).
+  // With independent standard deviations of 10 %: 1.96 sqrt(1e-5^2 + 3e-5^2).
   const double half = 1.96 * std::hypot(1e-5, 3e-5);
   EXPECT_NE(ReadFile(file).find(fmt::format("{:.4g} to ", 1.0 / (4e-4 + half))), std::string::npos)
       << ReadFile(file);
@@ -236,7 +237,7 @@ TEST_F(CalibratedTalos, InsignificantJointsAreNamedInEveryFile) {
     const std::string text = ReadFile(Export(format, "--min-significance 5"));
     EXPECT_NE(text.find("head_1_joint is nominal"), std::string::npos) << format;
   }
-  Compensator read(ReadRuntimeModel(scratch_.path() / "runtime"));  // with its comment
+  Compensator read(ReadRuntimeModel(scratch_.path() / "runtime"));  // the file has a comment
   EXPECT_EQ(read.model().robot, "talos");
   ExpectTheCalibratedRobot(ReadFile(scratch_.path() / "urdf"), {});
 }
@@ -255,13 +256,13 @@ TEST_F(CalibratedTalos, ExportsReplaceExportsAndNothingElse) {
         << result.err;
     EXPECT_EQ(ReadFile(file), notes) << format;
     Export(format, more);
-    Export(format, more);  // which says what it is, and is replaced
+    Export(format, more);  // replaced, because it states its origin
   }
 }
 
 TEST_F(Program, ExportsReplaceNoInputOfTheCalibration) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
-  // Even one that says that it was exported.
+  // An input is protected even if it states that it was exported.
   WriteFile(recording_, "Made by elastocal ");
   const ProgramResult result = RunProgram("export " + out_ + " --format pal -o " + recording_);
   EXPECT_EQ(result.exit_code, 3);
@@ -270,7 +271,7 @@ TEST_F(Program, ExportsReplaceNoInputOfTheCalibration) {
 }
 
 TEST_F(Program, OnlyWhatHeldOutPosturesSayHelpsIsExported) {
-  // Errors of some joints alone: the others' estimates are noise.
+  // Only some joints have errors. The estimates of the others are noise.
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
   truth[FindParameter(model_.parameters, "elbow_joint.theta")] = 0.01;
   truth[FindParameter(model_.parameters, "turret_joint.alpha")] = -0.008;
@@ -301,8 +302,8 @@ TEST_F(Program, OnlyWhatHeldOutPosturesSayHelpsIsExported) {
   EXPECT_FALSE(std::filesystem::exists(file + "2"));
 }
 
-// The zero of the last joint is told by measured places of markers alone: without them it is in
-// common with these places, and no gain.
+// Only measured places of markers tell the zero of the last joint. Without them it is uncertain
+// together with these places, and has no gain.
 TEST_F(Program, AZeroThatMeasuredPlacesTellIsAGain) {
   const std::string last = "flange_joint";
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
@@ -328,8 +329,8 @@ TEST_F(Program, AZeroThatMeasuredPlacesTellIsAGain) {
   }
 }
 
-// Beside measured places, validate shows a zero that no marker tells; diagnose takes those of the
-// calibration.
+// With measured places, `validate` reveals a zero that no marker shows. `diagnose` uses the places
+// of the calibration.
 TEST_F(Program, ValidateAndDiagnoseKnowMeasuredPlaces) {
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
   truth[FindParameter(model_.parameters, "flange_joint.theta")] = 0.02;
@@ -341,7 +342,7 @@ TEST_F(Program, ValidateAndDiagnoseKnowMeasuredPlaces) {
                     arm_.tree);
   std::vector<MarkerMeasurement> places;
   for (const Marker& marker : model_.markers) {
-    places.push_back({marker.name, marker.p_link_marker, 5e-6});  // more than the data say
+    places.push_back({marker.name, marker.p_link_marker, 5e-6});  // more exact than the data
   }
   const std::string table =
       " --marker-places " + scratch_.Write("p.csv", FormatMarkerPlaces(places));

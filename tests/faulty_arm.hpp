@@ -16,7 +16,7 @@
 
 namespace elastocal {
 
-/// An arm with errors, and 48 postures of it.
+/// An arm with errors in 48 postures.
 class FaultyArm : public testing::Test {
  protected:
   static Recording Record(const ErrorModel& model, const std::vector<int>& kept,
@@ -41,7 +41,7 @@ class FaultyArm : public testing::Test {
     recorded_.q.col(CoordinateOf(joint)).segment(begin, end - begin).array() += degrees * kDegree;
   }
 
-  /// Empty: nothing is found.
+  /// The explanation of the first fault; empty if none is found.
   std::string Said() const {
     const CalibrationResult fit = Calibrate(model_, recorded_, base_, kKind, project_.calibration);
     const auto found = FindRecordingFaults(fit, recorded_, project_.calibration);

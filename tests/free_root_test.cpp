@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot whose root link is somewhere else in each posture (a mobile manipulator that cameras in
-// the room see): what can be identified, recovery of the truth, and MuJoCo's robot from files.
+// A robot whose root link has another pose in each posture (a mobile manipulator that cameras in
+// the room see): identifiable parameters, recovery of the truth, and MuJoCo's robot from files.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 using Kind = ParameterKind;
 
-/// The recording of a robot that was somewhere else in each posture: up to two metres away, turned
+/// The recording with the robot at another place in each posture: up to two metres away, turned
 /// about the vertical, and tilted by `tilt` [rad].
 Recording Moved(Recording recording, double tilt, std::uint64_t seed) {
   Random random(seed);
@@ -45,7 +45,7 @@ bool IsRobots(const ErrorModel& model, int parameter) {
   return !IsExternal(model.parameters[parameter].kind);
 }
 
-/// Kept parameters of the robot itself.
+/// Number of kept parameters of the robot itself.
 int RobotsOwn(const ErrorModel& model, const BaseParameters& base) {
   return static_cast<int>(
       std::count_if(base.kept.begin(), base.kept.end(), [&](int i) { return IsRobots(model, i); }));
@@ -53,8 +53,8 @@ int RobotsOwn(const ErrorModel& model, const BaseParameters& base) {
 
 class FreeRoot : public InventedArm {};
 
-// Three markers on the root stand for the frame in which the arm was seen before: the same
-// parameters of the robot are identifiable, and of the rest six fewer (the pose of the root).
+// Three markers on the root replace the frame in which the arm was seen before. The same parameters
+// of the robot are identifiable, and six fewer of the others (the pose of the root).
 TEST_F(FreeRoot, MarkersOnTheRootTellAsMuchAsAHeldRoot) {
   const BaseParameters free = FreeBase(model_);
   EXPECT_EQ(free.geometric_count, base_.geometric_count - 6);
@@ -63,7 +63,7 @@ TEST_F(FreeRoot, MarkersOnTheRootTellAsMuchAsAHeldRoot) {
   EXPECT_GT(free.smallest_kept, 1e-4);
 }
 
-// What is before the first body with markers moves with the root.
+// Joints before the first body with markers act like a motion of the root.
 TEST_F(FreeRoot, JointsThatMoveAllMarkersTellNothing) {
   const ErrorModel model =
       SelectMarkers(model_, {"FOREARM_1", "FOREARM_2", "FOREARM_3", "TOOL_1", "TOOL_2", "TOOL_3"});
@@ -96,8 +96,8 @@ TEST_F(FreeRoot, NoiseFreeDataGiveBackTheTruth) {
     EXPECT_NEAR(result.delta[i], truth[i], 1e-8 + 5.0 * result.sd[i]) << model_.parameters[i].name;
     if (result.sd[i] < 1e-6) ++told;
   }
-  EXPECT_GE(told, 12);  // at least two of each of the arm's six joints
-  // Wherever the robot stands next: its markers are where the model says, seen from the root's.
+  EXPECT_GE(told, 12);  // at least two for each of the arm's six joints
+  // At a new place, the markers are where the model predicts them, relative to the root's markers.
   const Recording unseen = record(20, 2);
   const Prediction prediction = Predict(result.model, result.delta, unseen, {});
   EXPECT_LT(prediction.distances.maxCoeff(), 1e-8);
@@ -105,7 +105,7 @@ TEST_F(FreeRoot, NoiseFreeDataGiveBackTheTruth) {
   EXPECT_GT(Predict(result.model, nominal, unseen, {}).distances.maxCoeff(), 5e-3);
 }
 
-// Without markers on the root, those of the forearm place the arm.
+// Without markers on the root, those on the forearm place the arm.
 TEST_F(FreeRoot, IsPlacedByTheBodyNearestToTheRoot) {
   const ErrorModel model =
       SelectMarkers(model_, {"TOOL_1", "TOOL_2", "TOOL_3", "FOREARM_1", "FOREARM_2", "FOREARM_3"});
@@ -123,12 +123,12 @@ TEST_F(FreeRoot, IsPlacedByTheBodyNearestToTheRoot) {
             1e-12);
 }
 
-/// The rests of the trials of a simulated folder as a table of postures, the robot being somewhere
-/// else on a level floor in each.
+/// The rests of a simulated folder as a posture table, with the robot at another place on a level
+/// floor in each posture.
 class MobileManipulator : public testing::Test {
  protected:
   void SetUp() override {
-    // MuJoCo's arm, on a root link that is held; Moved() puts it somewhere else in each posture.
+    // MuJoCo's arm has a held root link. Moved() puts it at another place in each posture.
     const Project held = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
     SimulationOptions options;
     options.experiment.motion.arm_postures = 60;
@@ -164,9 +164,9 @@ TEST_F(MobileManipulator, OfMujocoIsCalibratedFromATable) {
   const ModelKind best = run.comparison.largest_kind();
   const double folds = error(run.cross_validation.metrics, best);
   EXPECT_LT(5.0 * folds, error(run.cross_validation.metrics, ModelKind::kUncalibrated));
-  EXPECT_LT(folds, 0.6e-3);  // noise of the cameras alone: 0.2 mm a coordinate
+  EXPECT_LT(folds, 0.6e-3);  // 0.2 mm of camera noise alone
 
-  // On other postures elsewhere, nothing fitted but where the robot stood.
+  // In other postures at other places, only the robot's place is fitted.
   const auto calibration = scratch_.path() / "out";
   OutputSet outputs;
   DeclareResults(calibration, CalibrationFileNames(project_), outputs);
@@ -175,7 +175,7 @@ TEST_F(MobileManipulator, OfMujocoIsCalibratedFromATable) {
   SetResults(calibration, MakeCalibrationFiles(project_, copy), {"calibrate", "", "1", {}, {}},
              outputs);
   outputs.Publish();
-  std::vector<int> resting;  // the other trial moves without a rest
+  std::vector<int> resting;  // without the trial that moves without rests
   const Recording& held_out = measured_.validation;
   for (int i = 0; i < held_out.posture_count(); ++i) {
     if (held_out.trials[held_out.trial[i]].kind == TrialKind::kRandom) resting.push_back(i);
@@ -208,8 +208,8 @@ TEST_F(MobileManipulator, WithMarkersOnOneBodyIsRefused) {
                    {"table3.csv", "root is free", "one body"});
 }
 
-// Recording folders of a base that drives between the rests, through the program's own files: what
-// `simulate`, `calibrate` and held-out trials make of them.
+// Recording folders of a base that drives between the rests: the files of `simulate`, `calibrate`
+// and held-out trials.
 TEST(DrivingBase, IsCalibratedFromARecordingFolder) {
   ScratchFolder scratch;
   const Project held = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
@@ -229,7 +229,7 @@ TEST(DrivingBase, IsCalibratedFromARecordingFolder) {
   EXPECT_LT(5.0 * error.at(run.comparison.largest_kind()), error.at(ModelKind::kUncalibrated));
 }
 
-/// The arm's project with a section `design`, and whatever else.
+/// The arm's project with the section `design` and other sections.
 Project ArmToDesign(const std::string& sections) {
   const auto file = SourceFile("tests/robots/arm6_project.yaml");
   std::string text = ReadFile(file);
@@ -245,14 +245,14 @@ PostureDesign Designed(const Project& project) {
   return DesignPostures(project, options);
 }
 
-// Postures are chosen for what is to be estimated: those for a free root tell more of it than as
-// many that were chosen as if the root were held.
+// Postures are chosen for what is estimated: those for a free root tell more of it than as many for
+// a held root.
 TEST(DesignWithAFreeRoot, ChoosesPosturesForIt) {
   const Project held = ArmToDesign(""), free = ArmToDesign("  root: free\n");
   const PostureDesign for_held = Designed(held), for_free = Designed(free);
   ASSERT_EQ(for_free.chains.size(), 2u);
-  // 6 revolute and 1 prismatic joint and 10 markers; 3 of the joints behind the forearm's markers,
-  // which the wrist's are seen from.
+  // 6 revolute joints, 1 prismatic joint and 10 markers. The wrist has 3 joints behind the markers
+  // of the forearm, from which its markers are seen.
   EXPECT_EQ(for_free.chains[0].design.parameter_count, 4 * 6 + 2 * 1 + 3 * 10 - 6);
   EXPECT_EQ(for_free.chains[1].design.parameter_count, 4 * 3 + 3 * 7 - 6);
   PostureAssessmentOptions options;

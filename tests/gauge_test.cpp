@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the root link's frame is: chosen by the prior, by nominal markers or by a link.
+// The gauge: the root link's frame is chosen by the prior, by nominal markers or by a link.
 
 #include "elastocal/calibration/gauge.hpp"
 
@@ -21,7 +21,7 @@
 namespace elastocal {
 namespace {
 
-/// The humanoid, calibrated whole: without springs, so that all is exact, or with them.
+/// The whole humanoid, calibrated without springs, which is exact, or with them.
 struct GaugedRobot {
   StandingHumanoid robot{12};
   Recording recording;
@@ -61,7 +61,7 @@ struct GaugedRobot {
 const Gauge kByMarkers{GaugeRule::kNominalMarkers, {}};
 const Gauge kByLink{GaugeRule::kLink, "torso_1_link"};
 
-/// Poses of hands and feet against each other, in some posture.
+/// Poses of hands and feet relative to each other in a random posture.
 Eigen::VectorXd EndsAgainstEachOther(const ErrorModel& model, const Eigen::VectorXd& delta) {
   Random random(9);
   const Eigen::VectorXd q = 0.5 * RandomPosture(model.tree, random);
@@ -87,9 +87,9 @@ double PriorCost(const CalibrationResult& result, const Eigen::VectorXd& delta) 
   return cost;
 }
 
-// The estimate's own gauge: along each of the six displacements of the root's frame, which no
-// measurement sees, the cost of the corrections is at its minimum. On both feet: what the
-// constraint of a single one leaves refers to the root's origin, which draws it by some
+// The gauge of the estimate: no measurement tells the six displacements of the root's frame. Along
+// each, the cost of the corrections must have its minimum. The robot stands on both feet: the
+// residual of the constraint of one foot refers to the root's origin and so shifts it by some
 // micrometres.
 TEST(Gauge, ThePriorMakesTheCorrectionsAtAllBranchesSmallTogether) {
   const GaugedRobot& rigid = GaugedRobot::Rigid();
@@ -117,7 +117,8 @@ TEST(Gauge, ThePriorMakesTheCorrectionsAtAllBranchesSmallTogether) {
     const double minus = displaced(-kStep);
     EXPECT_GT(plus, 0.0) << direction;
     EXPECT_GT(minus, 0.0) << direction;
-    // Where the parabola through the three has its minimum: within a micrometre, a microradian.
+    // The minimum of the parabola through the three values is zero to a micrometre or a
+    // microradian.
     EXPECT_NEAR(kStep * (minus - plus) / (plus + minus) / 2.0, 0.0, 1e-6) << direction;
   }
 }
@@ -154,7 +155,7 @@ TEST(Gauge, OfALinkLeavesItWhereTheUrdfHasIt) {
   EXPECT_EQ(GaugeText(result.gauge), "link torso_1_link");
 }
 
-// Nothing changes that can be measured, nor what is known of it.
+// Neither measurable quantities nor their uncertainty may change.
 TEST(Gauge, LeavesLinksMarkersAndTheirUncertaintyAsTheyAre) {
   const GaugedRobot& robot = GaugedRobot::Rigid();
   const CalibrationResult& before = robot.result;
@@ -182,7 +183,7 @@ TEST(Gauge, LeavesLinksMarkersAndTheirUncertaintyAsTheyAre) {
     EXPECT_LT((EndsAgainstEachOther(after.model, after.delta) - ends).cwiseAbs().maxCoeff(), 1e-9);
     const Prediction again = Predict(after.model, after.delta, robot.recording, {});
     EXPECT_LT((again.positions - predicted.positions).cwiseAbs().maxCoeff(), 1e-9);
-    // The placement of the estimate goes along.
+    // The estimated placement changes with the gauge.
     const Geometry geometry = ApplyErrors(before.model, before.delta);
     const Geometry displaced = ApplyErrors(after.model, after.delta);
     Geometry here = geometry;
@@ -201,8 +202,8 @@ TEST(Gauge, LeavesLinksMarkersAndTheirUncertaintyAsTheyAre) {
   }
 }
 
-// A leg's compliance refers to the root's origin and axes: what the displacement changes is a
-// hundredth of its size (one metre for a radian).
+// A leg's compliance refers to the origin and axes of the root. It changes by a hundredth of the
+// displacement (one metre for a radian).
 TEST(Gauge, ChangesWhatLegsGiveWayByAHundredthOfTheDisplacement) {
   const GaugedRobot& robot = GaugedRobot::Elastic();
   const Prediction predicted = Predict(robot.result.model, robot.result.delta, robot.recording, {});
@@ -231,7 +232,7 @@ TEST(Gauge, IsRefusedWhereItCannotBeHad) {
   ExpectInputError([&] { CheckGauge(kByMarkers, hand, {}); }, {"three or more"});
 }
 
-/// An arm of four joints on a pillar that bends as its first joint does, with clusters of markers.
+/// An arm of four joints with clusters of markers, on a pillar that bends like its first joint.
 Project BendingArm(const ScratchFolder& folder) {
   const auto link = [](const std::string& name) {
     return "<link name='" + name +
@@ -259,10 +260,10 @@ Project BendingArm(const ScratchFolder& folder) {
       "    - {name: HAND, link: hand, positions_mm: [[50, 40, 0], [150, 0, 60], [90, -50, 0]]}\n"));
 }
 
-// Loads are taken as they are while the robot's constants change. If those of the root's springs
-// stood still in its axes then, they would tell where its frame is: noise drew it by many of the
-// standard deviations that were stated, or the estimate ran away (six clean recordings of an arm:
-// two did, and one had its first joint off by 6.9 +- 0.4 degrees).
+// Loads are constant while the robot's constants change. If those of the root's springs were
+// constant in its axes, they would determine its frame. Noise would then shift it by many of the
+// stated standard deviations, or the estimate would run away. (Of six clean recordings of an arm,
+// two did, and one had an error of 6.9 +- 0.4 degrees in its first joint.)
 TEST(Gauge, LoadsDoNotTellWhereTheRootIs) {
   const ScratchFolder folder;
   const Project project = BendingArm(folder);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said of faults that a fit leaves, when they are not one simple fault.
+// Messages about faults that remain after a fit and are not one simple fault.
 #include "elastocal/mistakes/general_fault.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ namespace {
 
 using GeneralFaults = FaultyArm;
 
-// The first guess is one slip of more than either, somewhere near the second one.
+// The first guess is a single slip, larger than either and near the second one.
 TEST_F(GeneralFaults, AJointThatSlipsTwiceIsSaidToSlipTwice) {
   EXPECT_EQ(Said(), "");
   Turn("elbow_joint", 16, 48, 0.7);
@@ -65,7 +65,7 @@ TEST_F(GeneralFaults, ADriftInOneTrialIsNamedWithIt) {
   ExpectIn(said, "from the first posture to the last of trial first");
 }
 
-// A derivative at the wrong gain is far from the gain.
+// The derivative is taken at the wrong gain, far from the right one.
 TEST_F(GeneralFaults, AGainOfHalfIsFoundAsHalf) {
   recorded_.q.col(CoordinateOf("elbow_joint")) *= 0.5;
   const std::string said = Said(), begin = "elbow_joint: its positions are ";
@@ -73,7 +73,7 @@ TEST_F(GeneralFaults, AGainOfHalfIsFoundAsHalf) {
   EXPECT_NEAR(std::stod(said.substr(begin.size())), 0.5, 0.005) << said;  // sd 0.0009
 }
 
-// A worn encoder: no posture has anything in common with another one.
+// With a worn encoder, postures have independent errors.
 TEST_F(GeneralFaults, PositionsOfOneJointThatScatterAreNamed) {
   const auto scattered = [&] {
     return FindScatteredPositions(Calibrate(model_, recorded_, base_, kKind, project_.calibration),
@@ -88,11 +88,11 @@ TEST_F(GeneralFaults, PositionsOfOneJointThatScatterAreNamed) {
   EXPECT_EQ(found->coordinate, CoordinateOf("elbow_joint"));
   EXPECT_TRUE(IsTooLoose(*found, project_.tree));
   EXPECT_FALSE(IsTooLoose({found->coordinate, 0.3 * kDegree, found->left}, project_.tree));
-  // By the median of 48 draws; the fit follows a part of them.
+  // The error is estimated by the median of 48 draws, and the fit follows a part of them.
   EXPECT_NEAR(found->off, 1.0 * kDegree, 0.5 * kDegree);
 }
 
-// A zero that another trial has elsewhere: what all postures of a trial share is no scatter.
+// Another trial has another zero. An error that all postures of a trial share is no scatter.
 TEST_F(GeneralFaults, AJointThatIsOffThroughoutATrialDoesNotScatter) {
   recorded_.trials = {{"first", TrialKind::kCalibration, {project_.chains.front().name}},
                       {"second", TrialKind::kCalibration, {project_.chains.front().name}}};
@@ -105,8 +105,9 @@ TEST_F(GeneralFaults, AJointThatIsOffThroughoutATrialDoesNotScatter) {
   EXPECT_FALSE(found) << (found ? Describe(*found, project_.tree) : "");
 }
 
-// As a head while a leg is measured. Something pulls at a hand that no camera sees and bends the
-// shoulder by some hundredths of a millimetre; the loads of another attitude of the hand would too.
+// The joint is for instance a neck while a leg is measured. A force on a hand that no camera sees
+// bends the shoulder by some hundredths of a millimetre. Loads of another attitude of the hand
+// would do the same.
 TEST_F(GeneralFaults, AJointWhoseMarkersAreOutOfSightDoesNotScatter) {
   const int shoulder = project_.tree.coordinate_joint[CoordinateOf("shoulder_joint")];
   const int bend = CoordinateOf("bend_joint");
@@ -153,8 +154,8 @@ TEST_F(GeneralFaults, AKnockedClusterIsNoSlipOfAJoint) {
   ExpectIn(Said(), "cluster TOOL: its markers seem to be elsewhere on their link from posture 2");
 }
 
-// The first fit is bent by the slip; its size is that of a fit in which it is undone. What a
-// cluster's own displacement explains, which has more numbers, is compared with that.
+// The slip distorts the first fit. Its size is that of a fit that corrects it. It is compared with
+// a displacement of the cluster itself, which has more numbers.
 TEST_F(GeneralFaults, TheSizeOfALargeSlipIsThatOfTheLastFit) {
   Turn("flange_joint", 20, 48, 8.0);
   const std::string said = Said(), begin = "flange_joint: its positions are off by ", sign = " +- ";
@@ -164,7 +165,7 @@ TEST_F(GeneralFaults, TheSizeOfALargeSlipIsThatOfTheLastFit) {
   EXPECT_NEAR(std::stod(said.substr(begin.size())), 8.0, 3.0 * sd) << said;
 }
 
-// A robot's lengths have no direction of the room.
+// The lengths of a robot have no direction in the room.
 TEST_F(GeneralFaults, AScaleOfOneAxisOfTheCameras) {
   for (int m = 0; m < recorded_.marker_count(); ++m) recorded_.markers.col(3 * m + 2) *= 1.01;
   ExpectIn(Said(), "camera positions along z are 1.0");
@@ -183,7 +184,7 @@ TEST_F(GeneralFaults, CamerasWhoseScaleChangesOutwards) {
   ExpectIn(Said(), "the cameras' space is distorted: their scale at the outermost marker is 1.0");
 }
 
-// The log has where the robot was sent, the markers where it was before it came to rest.
+// The log has the commanded positions. The markers were measured before the robot came to rest.
 TEST_F(GeneralFaults, ATableThatWasMeasuredBeforeRest) {
   for (int i = 1; i < 48; ++i) {
     recorded_.q.row(i) = (recorded_.q.row(i) - 0.015 * recorded_.q.row(i - 1)) / 0.985;
@@ -198,7 +199,7 @@ TEST_F(GeneralFaults, OneJointThatIsLoggedLate) {
   ExpectIn(Said(), "flange_joint: positions are behind the markers by ");
 }
 
-// A robot that was sent to round numbers is recorded as well by them as by any others.
+// If a robot was commanded to round numbers, they are as good a record as any others.
 TEST_F(GeneralFaults, ARoundedColumnIsOneWhosePositionsAreElsewhere) {
   const int c = CoordinateOf("elbow_joint");
   const auto found = [&] {
@@ -218,7 +219,7 @@ TEST_F(GeneralFaults, ARoundedColumnIsOneWhosePositionsAreElsewhere) {
   EXPECT_TRUE(found().empty());
 }
 
-// Far less than the nominal robot errs by.
+// These errors are far below those of the nominal robot.
 TEST_F(GeneralFaults, AJointThatIsElsewhereInFewRows) {
   const std::vector<LabelCluster> none;
   const auto odd = [&] {
@@ -234,7 +235,7 @@ TEST_F(GeneralFaults, AJointThatIsElsewhereInFewRows) {
   ExpectIn(found[0].what, "in postures 8, 19, 31, 42");
 }
 
-// The further from its zero, the further off: in few postures far enough to be odd.
+// The error grows with the distance from the zero, but makes only few postures odd.
 TEST_F(GeneralFaults, AGainIsNoOddPosture) {
   recorded_.q.col(CoordinateOf("turret_joint")) *= 0.97;
   for (const OddPostures& one :
@@ -244,20 +245,20 @@ TEST_F(GeneralFaults, AGainIsNoOddPosture) {
   EXPECT_EQ(Said().find("turret_joint: its positions are 0.97"), 0u) << Said();
 }
 
-// A fit that left out much as outliers is where other unknowns explain most of the squares: what a
-// fault explains is a share of what these leave.
+// If a fit left out many outliers, other unknowns explain most of the squares. A fault is judged by
+// its share of what these leave.
 TEST_F(GeneralFaults, AFitThatIsFarFromTheDataHidesNoGain) {
   const CalibrationResult fit = Calibrate(model_, recorded_, base_, kKind, project_.calibration);
   recorded_.q.col(CoordinateOf("elbow_joint")) *= 1.01;
-  Turn("turret_joint", 0, 48, 3.0);  // in all postures: an error of the robot
+  Turn("turret_joint", 0, 48, 3.0);  // in all postures, so an error of the robot
   const auto found = FindRecordingFaults(fit, recorded_, project_.calibration);
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found[0].kind, FaultKind::kJointGain);
   EXPECT_EQ(found[0].coordinate, CoordinateOf("elbow_joint"));
-  EXPECT_NEAR(found[0].size, 0.01, 0.001);  // by one linear step
+  EXPECT_NEAR(found[0].size, 0.01, 0.001);  // after one linear step
 }
 
-// Ten postures: the gain is most of the noise that it would be judged by.
+// In ten postures, most of the noise that would judge the gain is the gain itself.
 TEST_F(GeneralFaults, AGainIsJudgedByTheNoiseWithoutIt) {
   recorded_ = SelectPostures(recorded_, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
   EXPECT_EQ(Said(), "");
@@ -265,7 +266,7 @@ TEST_F(GeneralFaults, AGainIsJudgedByTheNoiseWithoutIt) {
   ExpectIn(Said(), "bend_joint: its positions are 1.01");
 }
 
-// Half a percent is little for a gear, and much for a lead or the scale of the cameras.
+// Half a percent is little for a gear, but much for a lead screw or the scale of the cameras.
 TEST_F(GeneralFaults, AGainOfASlideCountsFromAFifthOfAPercentOn) {
   recorded_.q.col(CoordinateOf("rail_joint")) *= 1.003;
   const std::string said = Said();
@@ -273,7 +274,7 @@ TEST_F(GeneralFaults, AGainOfASlideCountsFromAFifthOfAPercentOn) {
   ExpectIn(said, "if its scale is right, the cameras' is 0.99");
 }
 
-// As by a plate that is screwed on loosely, or by a base that swings.
+// A loosely fixed plate or a swinging base moves markers like this.
 TEST_F(GeneralFaults, MarkersThatAreElsewhereInEachPostureAreNamed) {
   const auto said = [&](const std::vector<std::string>& clusters, double sd) -> std::string {
     Random random(4);
@@ -322,7 +323,7 @@ TEST_F(GeneralFaults, MarkersOnAnotherLinkThanTheProjectSaysAreNamedWithIt) {
   EXPECT_FALSE(FindCarryingLink(model_, recorded_, SeenClusters(project_, recorded_)));
 }
 
-// With -z up, springs take up a part of a gain beside a slip; both explain all with z up.
+// With -z up, springs replace a part of a gain and a slip. With z up, both together explain all.
 TEST_F(GeneralFaults, AGainBesideASlipIsNoOtherAxisUp) {
   recorded_.q.col(CoordinateOf("shoulder_joint")) *= 1.025;
   Turn("elbow_joint", 26, 48, -1.5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What held-out trials tell of a fault that the trials of the estimate show, and what they cannot.
+// What held-out trials tell about a fault in the trials of the estimate, and what they cannot tell.
 
 #include <algorithm>
 
@@ -68,7 +68,7 @@ TEST_F(HeldOutGain, IsOneOfTheTrialsThatHaveIt) {
   held_out.q.col(kCoordinate) *= kGain;
   const std::string all = Explained(recording, held_out);
   EXPECT_NE(all.find("(--accept gain:" + joint_ + "=1.0"), std::string::npos) << all;
-  held_out.q.col(kCoordinate).setConstant(0.2);  // which tells nothing of it
+  held_out.q.col(kCoordinate).setConstant(0.2);  // now they tell nothing about the gain
   EXPECT_NE(Explained(recording, held_out).find("(--accept gain:" + joint_ + "=1.0"),
             std::string::npos);
 }

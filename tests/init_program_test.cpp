@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command init as its users run it.
+// The command `init` as its users run it.
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(InitProgram, WritesAProjectThatInspectAndDesignTakeAsItIs) {
   EXPECT_EQ(json["chains"][0]["tip"], "tool");
   EXPECT_FALSE(json["stands"]);
 #ifdef ELASTOCAL_HAS_PAGE
-  // The page shows the draft and, made again, what somebody has corrected in it.
+  // The page shows the draft. Made again, it shows what somebody has corrected in the draft.
   const auto radius_on_page = [&] {
     const std::string page = ReadFile(out + "/report.html");
     const std::string key = "\"radius_m\":";

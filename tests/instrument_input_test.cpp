@@ -52,7 +52,7 @@ TEST(InstrumentInput, TheProjectSaysWhatIsWrong) {
         "link: arm_left_7_link, tracker: room, covariance: [[1]]}", "six rows");
 }
 
-/// A table in which all instruments show something in the first row. `cells` replaces cells.
+/// A table in which all instruments have values in the first row. `cells` replaces cells.
 std::string InstrumentTable(const Project& project, const std::string& from = "",
                             const std::string& to = "") {
   std::string text = TableText(
@@ -81,7 +81,7 @@ TEST(InstrumentInput, ATableHoldsWhatAllInstrumentsShow) {
   EXPECT_EQ(tables.observations.all[0].measured.tail<2>(), Eigen::Vector2d(0.0, 0.8));
   EXPECT_EQ(tables.observations.all[1].measured, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(tables.setup.instruments[2]->name, "imu");
-  EXPECT_EQ(tables.observations.effects.size(), 1u);  // of the wall
+  EXPECT_EQ(tables.observations.effects.size(), 1u);  // the wall's effect
 }
 
 TEST(InstrumentInput, TheTableSaysWhatIsWrong) {

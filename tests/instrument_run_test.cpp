@@ -17,9 +17,9 @@
 namespace elastocal {
 namespace {
 
-// The example with instruments of all kinds, on a virtual TALOS.
+// The example with all kinds of instruments on a virtual TALOS.
 
-/// A posture with bent knees; arms and trunk are anywhere near the middle of their ranges.
+/// A posture with bent knees. Arms and trunk are near the middle of their ranges.
 Eigen::VectorXd InstrumentPosture(const RobotTree& tree, Random& random) {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(tree.coordinate_count());
   for (const Joint& joint : tree.joints) {
@@ -48,8 +48,8 @@ Eigen::VectorXd InstrumentPosture(const RobotTree& tree, Random& random) {
   return q;
 }
 
-/// What the instruments of the project show of a robot with random errors, as it is written in a
-/// table; every third posture lacks the trackers, every fourth the wire.
+/// Measurements of the project's instruments on a robot with random errors, written as a table.
+/// Every third posture lacks the trackers, and every fourth the wire.
 class VirtualTalos {
  public:
   VirtualTalos(const Project& project, std::uint64_t seed)
@@ -111,7 +111,7 @@ class VirtualTalos {
   const ObservedValues& truth() const { return truth_; }
 
  private:
-  /// The feet stand where the project says, flat.
+  /// The feet stand flat where the project has them.
   static ObservationSetup SetupOf(const Project& project) {
     ObservationSetup setup = project.contact->setup;
     const std::vector<Transform> upright =
@@ -144,7 +144,7 @@ TEST(InstrumentRun, AllKindsCalibrateTheExampleFromATable) {
     }
     return 0.0;
   };
-  // Postures that were left out, against noise of 0.5 mm.
+  // Errors on held-out postures, for noise of 0.5 mm.
   EXPECT_LT(rms(run.calibrated, "lhand"), 0.25 * rms(run.uncalibrated, "lhand"));
   EXPECT_LT(rms(run.calibrated, "rhand"), 0.25 * rms(run.uncalibrated, "rhand"));
   EXPECT_LT(rms(run.calibrated, "wire"), 0.5 * rms(run.uncalibrated, "wire"));
@@ -157,11 +157,11 @@ TEST(InstrumentRun, AllKindsCalibrateTheExampleFromATable) {
   EXPECT_LT((*imu)["sds"][0].get<double>(), 0.02);
   EXPECT_GT((*imu)["sds"][0].get<double>(), 1e-4);
   EXPECT_EQ(summary["contact"]["kfold"]["instruments"].size(), 5u);
-  // The files can be read again.
+  // The files must be readable again.
   EXPECT_EQ(MakeContactFiles(project, run).count("calibration.yaml"), 1u);
 }
 
-// Thirty joints have 435 pairs.
+// Thirty joints make 435 pairs.
 TEST(InstrumentRun, AMistakeInTheTableOfAHumanoidIsNamed) {
   const Project project = ReadProject(SourceFile("examples/talos_instruments/project.yaml"));
   VirtualTalos robot(project, 3);

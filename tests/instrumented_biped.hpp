@@ -38,7 +38,7 @@ struct InstrumentedBiped {
         Transform T_link = RotX(0.4) * RotZ(0.7);
         T_link.translation() << 0.05, -0.02, 0.03;
         AddTrackedBody(setup, {.name = "hand", .link = left, .T_link = T_link, .tracker = room});
-        // Seen from the trunk, with a covariance of its own.
+        // A body that the trunk's tracker sees, with its own covariance.
         const Tracker head = AddTracker(setup, "head", trunk);
         Eigen::MatrixXd covariance = 1e-6 * Eigen::MatrixXd::Identity(6, 6);
         covariance(0, 4) = covariance(4, 0) = 5e-7;
@@ -78,11 +78,12 @@ struct InstrumentedBiped {
     model = MakeTouchingBiped(tree, setup, hold);
   }
 
-  /// A camera on the trunk and one in the room see tags on both hands; one sees a tag that stands.
+  /// Adds a camera on the trunk and one in the room, which see tags on both hands. One also sees a
+  /// fixed tag.
   static void AddCameras(ObservationSetup& setup, int trunk, int left, int right) {
     CameraSetup head{.name = "camera", .link = trunk};
     head.camera = {620.0, 610.0, 320.0, 240.0, 0.08, -0.05, 2e-3, -1e-3, 0.01};
-    // Ahead and down.
+    // The camera looks ahead and downwards.
     head.T_parent = RotZ(-0.5 * M_PI) * RotX(-0.5 * M_PI - 0.7);
     head.T_parent.translation() << 0.05, 0.0, 0.55;
     CameraSetup room{.name = "room_camera"};
@@ -106,7 +107,7 @@ struct InstrumentedBiped {
 
   bool touches() const { return !model.setup.plates.empty(); }
 
-  /// What the true robot shows without noise.
+  /// Measurements of the true robot without noise.
   Observations Observe(const ObservedValues& truth, int touch_count, int posture_count,
                        Random& random) const {
     Observations all;
@@ -123,7 +124,7 @@ struct InstrumentedBiped {
   ObservedRobot model;
 };
 
-/// Adds normal noise of the sizes that the sources have to all measurements.
+/// Adds normal noise to all measurements, with the standard deviations of their sources.
 inline void AddNoise(const ObservedRobot& model, Observations& observations, Random& random) {
   for (Observation& of : observations.all) {
     const Instrument& instrument = model.instrument(of.instrument);

@@ -14,7 +14,7 @@
 
 namespace elastocal {
 
-/// Tests on an invented arm with geometric errors as the prior expects them.
+/// Tests on an invented arm with geometric errors drawn from the prior.
 class InventedArm : public ::testing::Test {
  protected:
   static constexpr double kDegree = 0.017453292519943295;
@@ -31,7 +31,7 @@ class InventedArm : public ::testing::Test {
     return all;
   }
 
-  /// Errors of the joints, and of markers glued on by hand where these have a standard deviation.
+  /// Errors of the joints, and of markers that are glued on by hand if `marker_sd` is above 0.
   Eigen::VectorXd Truth(int robot, double marker_sd = 0.0) const {
     std::map<ParameterKind, double> sd;
     for (const auto kind : {ParameterKind::kTheta, ParameterKind::kAlpha, ParameterKind::kBeta,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What joints gain on postures that their estimate has not seen.
+// What joints gain on held-out postures.
 #include "elastocal/validation/joint_gains.hpp"
 
 #include <algorithm>
@@ -46,8 +46,8 @@ class Gains : public InventedArm {
     return names;
   }
 
-  /// Held-out error with the joints as given, waist and markers fitted to the training postures by
-  /// the estimator itself.
+  /// Held-out error with the given joints. The estimator fits waist and markers to the training
+  /// postures.
   double Refitted(const HeldOutSplit& split, const std::map<std::string, double>& joints) const {
     const CalibrationResult result =
         RefitExternals(model_, split.training, base_, CalibrationOptions(), joints);
@@ -76,7 +76,7 @@ TEST_F(Gains, JointsWithoutErrorsReturnToNominal) {
   const HeldOutSplit split = Split(truth);
   const GainStudy study = StudyGains({split}, {}, {.least = 0.02e-3});
   EXPECT_EQ(Kept(study), (std::vector<std::string>{"turret_joint", "elbow_joint"}));
-  // Noise of 0.2 mm a coordinate is left; estimates of joints without errors only add to it.
+  // Noise of 0.2 mm a coordinate remains. Estimates of joints without errors only add to it.
   EXPECT_NEAR(study.kept, std::sqrt(3.0) * 0.2e-3, 0.02e-3);
   EXPECT_NEAR(study.kept, study.all, 0.02e-3);
   EXPECT_GT(study.uncalibrated, 1e-3);
@@ -95,7 +95,7 @@ TEST_F(Gains, FiguresAreThoseOfTheEstimatorsOwnRefit) {
 }
 
 TEST_F(Gains, AGainIsWhatTheJointItselfDoes) {
-  // 5 mrad about the axis of the elbow, which moves what is beyond it and nothing else.
+  // The elbow is turned by 5 mrad about its axis, which moves only what it carries.
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
   Of(truth, "elbow_joint.theta") = 5e-3;
   HeldOutSplit split = Split(truth);
@@ -107,12 +107,13 @@ TEST_F(Gains, AGainIsWhatTheJointItselfDoes) {
   EXPECT_NEAR(elbow.rmse, std::sqrt(3.0) * 0.2e-3, 0.02e-3);
   std::map<std::string, double> nominal;
   const double without = Refitted(split, nominal);
-  EXPECT_GT(elbow.gain, without - study.all);  // over the markers that it moves, not over all
+  EXPECT_GT(elbow.gain, without - study.all);  // counts only the markers that it moves
   EXPECT_LT(elbow.observations, study.observations);
 }
 
 TEST_F(Gains, WhatTheMarkersCanTakeUpIsNoGain) {
-  // The last joint turns the hand, and the markers on it are turned back: the same recording.
+  // The last joint turns the hand, and its markers are turned back, so that the recording is the
+  // same.
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
   Of(truth, "elbow_joint.theta") = 0.01;
   HeldOutSplit split = Split(truth);

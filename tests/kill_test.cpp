@@ -55,7 +55,7 @@ pid_t Start(const std::string& arguments) {
   _exit(127);
 }
 
-/// A text without the durations in it, the one thing in which two runs of one command differ.
+/// The text without durations, in which alone two runs of one command differ.
 std::string WithoutDurations(const std::string& text) {
   static const std::regex duration(
       R"re("(time_s|seconds|solve_seconds|planning_s)": ?[-+.e0-9]+)re");
@@ -64,12 +64,12 @@ std::string WithoutDurations(const std::string& text) {
 
 using Files = std::map<std::string, std::string>;
 
-/// Every file in a folder, by its name.
+/// All files of a folder by their names.
 Files FilesOf(const fs::path& folder) {
   Files files;
   for (const auto& entry : fs::directory_iterator(folder)) {
     EXPECT_TRUE(entry.is_regular_file()) << entry.path();
-    if (entry.path().filename() == "SHA256SUMS") {  // durations change it
+    if (entry.path().filename() == "SHA256SUMS") {  // contains hashes of durations
       const std::string check =
           "cd '" + folder.string() + "' && sha256sum --check --quiet SHA256SUMS";
       EXPECT_EQ(std::system(check.c_str()), 0) << folder;
@@ -80,7 +80,7 @@ Files FilesOf(const fs::path& folder) {
   return files;
 }
 
-/// Names of the files in which two folders differ.
+/// Names of the files that differ between two folders.
 std::string DifferencesOf(const Files& a, const Files& b) {
   std::string names;
   for (const auto& [name, text] : a) {
@@ -98,7 +98,7 @@ class Killed : public Program {
     return (scratch_.path() / name).string();
   }
 
-  /// Both commands write into FOLDER and differ in their input or seed.
+  /// Tries to kill both commands. They write into FOLDER and differ in their input or seed.
   void TryKills(const std::string& first, const std::string& second) {
     const fs::path copy = scratch_.path() / "earlier", folder = scratch_.path() / "folder";
     Finish(first, folder);

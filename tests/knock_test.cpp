@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cluster of markers knocked during an experiment of the whole body: found, named, and without
-// consequence for the result.
+// A cluster of markers is knocked during an experiment of the whole body. The knock is found and
+// named and does not affect the result.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace elastocal {
 namespace {
 
-constexpr int kPostures = 16;  // a trial
+constexpr int kPostures = 16;  // per trial
 const Eigen::Vector3d kPush(3e-3, 0.0, -4e-3);
 
 struct KnockExperiment {
@@ -47,8 +47,8 @@ struct KnockExperiment {
 
   Recording Clean() const { return robot.Record(truth, options); }
 
-  /// From `posture` on the cluster is somewhere else on its link: its markers are taken from a
-  /// robot that carries them there, with the same noise.
+  /// From `posture` on, the cluster has another place on its link. Its markers come from a robot
+  /// that carries them there, with the same noise.
   void Push(const std::string& name, int posture, Recording& recording) const {
     Eigen::VectorXd pushed = truth;
     for (int m : Cluster(name).markers) {
@@ -82,13 +82,13 @@ void ExpectOneKnock(const std::vector<Knock>& knocks, const std::string& cluster
   EXPECT_EQ(knocks[0].cluster, cluster);
   EXPECT_EQ(knocks[0].posture, posture);
   EXPECT_EQ(knocks[0].last_before, last_before);
-  // Half a millimetre: robot errors that are not linear, and those that the step shares with
-  // others.
+  // The tolerance allows for nonlinear errors of the robot, and for errors that the step shares
+  // with others.
   EXPECT_NEAR(knocks[0].distance, kPush.norm(), 0.15e-3);
   EXPECT_GT(knocks[0].significance, 1.0);
 }
 
-// The left arm is seen in its own trial only, the second of five.
+// Only its own trial, the second of five, shows the left arm.
 TEST(Knock, OfAHandInTheMiddleOfItsTrialIsFound) {
   const KnockExperiment experiment(11);
   Recording recording = experiment.Clean();
@@ -97,7 +97,7 @@ TEST(Knock, OfAHandInTheMiddleOfItsTrialIsFound) {
   ExpectOneKnock(experiment.Find(recording), "LHAND", middle - 1, middle);
 }
 
-// The trunk is seen in the first three trials.
+// The first three trials show the trunk.
 TEST(Knock, OfTheTrunkBetweenTrialsIsFound) {
   const KnockExperiment experiment(12);
   Recording recording = experiment.Clean();
@@ -105,7 +105,7 @@ TEST(Knock, OfTheTrunkBetweenTrialsIsFound) {
   ExpectOneKnock(experiment.Find(recording), "TRUNK", 2 * kPostures - 1, 2 * kPostures);
 }
 
-// All other markers seem to move with it, against the waist.
+// Relative to the waist, all other markers seem to move together.
 TEST(Knock, OfTheWaistIsNotTakenForOneOfTheOthers) {
   const KnockExperiment experiment(13);
   Recording recording = experiment.Clean();
@@ -114,7 +114,7 @@ TEST(Knock, OfTheWaistIsNotTakenForOneOfTheOthers) {
   ExpectOneKnock(experiment.Find(recording), "WAIST", middle - 1, middle);
 }
 
-// Whether there may be one, few of the moments say first.
+// A few of the moments first tell whether there may be a knock.
 TEST(Knock, IsFoundAmongThousandsOfMoments) {
   const Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
   const ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
@@ -164,7 +164,7 @@ TEST(Knock, IsNotSeenWhereThereWasNone) {
   }
 }
 
-// Two of twelve robots seemed to have a knocked foot, by 2 mm upwards where the robot changes feet.
+// Two of twelve robots seemed to have a foot knocked upwards by 2 mm where the robot changes feet.
 TEST(Knock, IsNoErrorOfTheTorques) {
   for (const std::uint64_t seed : {30, 40}) {
     KnockExperiment experiment(seed);
@@ -173,7 +173,8 @@ TEST(Knock, IsNoErrorOfTheTorques) {
   }
 }
 
-// A rigid robot has no other explanation for a foot that sinks when it bears the robot alone.
+// If the model is rigid, a knock is the only explanation for a foot that sinks when it carries the
+// robot alone.
 TEST(Knock, IsNoLegThatGivesWayWhereARigidRobotIsEstimated) {
   for (const std::uint64_t seed : {15, 17}) {
     const KnockExperiment experiment(seed);
@@ -192,8 +193,8 @@ TEST(Knock, IsNoLegThatGivesWayWhereARigidRobotIsEstimated) {
   }
 }
 
-// With the cluster taken as two the estimates are those of the clean recording; the noise is the
-// same, so that they differ by less than their uncertainty.
+// With the cluster split, the estimates are those of the clean recording. The noise is the same, so
+// that they differ by less than their uncertainty.
 TEST(Knock, LeavesNoTraceInTheParametersOnceTheClusterIsTwo) {
   const KnockExperiment experiment(15);
   const StandingHumanoid& robot = experiment.robot;
@@ -210,7 +211,7 @@ TEST(Knock, LeavesNoTraceInTheParametersOnceTheClusterIsTwo) {
   EXPECT_EQ(result.termination, Termination::kConverged) << result.message;
   EXPECT_LT(result.outliers.size(), 3u);
   int compared = 0;
-  for (int i : robot.base.kept) {  // earlier parameters keep their places
+  for (int i : robot.base.kept) {  // earlier parameters keep their indices
     const Parameter& parameter = robot.model.parameters[i];
     ASSERT_EQ(model.parameters[i].name, parameter.name);
     if (IsExternal(parameter.kind) || result.status[i] != ParameterStatus::kEstimated ||
@@ -226,7 +227,7 @@ TEST(Knock, LeavesNoTraceInTheParametersOnceTheClusterIsTwo) {
 
 constexpr int kFolds = 3;
 
-/// Held-out distances of the full model, m, as `calibrate --kfold 3` finds them.
+/// Held-out distances of the full model, m, as by `calibrate --kfold 3`.
 Eigen::MatrixXd HeldOutDistances(const KnockExperiment& experiment, const Recording& recording,
                                  int knocks_of_all) {
   const Project& project = experiment.robot.project;
@@ -246,8 +247,8 @@ Eigen::MatrixXd HeldOutDistances(const KnockExperiment& experiment, const Record
   return folds.distances[full];
 }
 
-/// Whether posture i is between the last posture before a knock and the first one after it that its
-/// fold is estimated from.
+/// Whether posture i is between the last training posture of its fold before a knock and the first
+/// one after it.
 bool Between(const std::vector<int>& fold_of, int i, int knock) {
   int before = knock - 1;
   int after = knock;
@@ -256,8 +257,8 @@ bool Between(const std::vector<int>& fold_of, int i, int knock) {
   return before < i && i < after;
 }
 
-// The same robot, postures and noise without a knock, with one in the middle, and with one that
-// only three postures follow, as few as it can be found from. Each fold finds the knock by itself.
+// The same robot, postures and noise without a knock, with one in the middle, and with one before
+// the last three postures, the fewest that can reveal it. Each fold finds the knock by itself.
 TEST(Knock, FoldsErrOnlyByAKnockThatTheirTrainingPosturesDoNotShow) {
   const KnockExperiment experiment(16);
   const std::vector<int> fold_of = DealFolds(experiment.Clean(), {.folds = kFolds});
@@ -268,19 +269,19 @@ TEST(Knock, FoldsErrOnlyByAKnockThatTheirTrainingPosturesDoNotShow) {
   };
   const Eigen::MatrixXd clean = HeldOutDistances(experiment, experiment.Clean(), 0);
   const int middle = kPostures + kPostures / 2;
-  const int late = 2 * kPostures - 3;  // the hand is seen until the end of this trial only
+  const int late = 2 * kPostures - 3;  // the hand is seen in this trial only
   const Eigen::MatrixXd knocked = with_knock_at(middle), knocked_late = with_knock_at(late);
   EXPECT_TRUE(Between(fold_of, middle, middle));
   for (int m : experiment.Cluster("LHAND").markers) {
-    // Before and after it as if it had not been; not in postures around it, which could be on
-    // either side.
+    // Errors before and after the knock are as without it. Postures around it, which may be on
+    // either side, have none.
     for (int i = kPostures; i < 2 * kPostures; ++i) {
       EXPECT_EQ(std::isnan(knocked(i, m)), Between(fold_of, i, middle)) << i;
       if (Between(fold_of, i, middle)) continue;
-      EXPECT_NEAR(knocked(i, m), clean(i, m), 1e-3) << i;  // a half of the push is 2.5 mm
+      EXPECT_NEAR(knocked(i, m), clean(i, m), 1e-3) << i;  // half of the push is 2.5 mm
     }
-    // A fold that holds one of the three does not know of the knock, and errs by it. Folds to which
-    // all postures had told it would not.
+    // A fold that leaves out one of these three does not know the knock and errs by it. If folds
+    // knew all postures, they would not.
     for (int i = late; i < late + 3; ++i) EXPECT_GT(knocked_late(i, m), clean(i, m) + 2e-3) << i;
   }
 }

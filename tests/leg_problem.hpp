@@ -8,7 +8,7 @@
 
 namespace elastocal {
 
-// A small problem for the tests of this layer: a leg of four joints with a foot, six markers.
+// A small problem for the tests of this layer: a leg of four joints with a foot and six markers.
 
 inline RobotTree MakeLegRobot() {
   RobotTree tree = MakeRoot();
@@ -58,7 +58,7 @@ inline ChainSetup LegSetup(const RobotTree& tree) {
   return setup;
 }
 
-/// Everything together; stays where it is, as parts refer to each other.
+/// The whole problem. It cannot be moved, because its parts refer to each other.
 struct LegProblem {
   explicit LegProblem(Criterion criterion = Criterion::kO1, const Elasticity& elasticity = {})
       : model(MakeErrorModel(MakeLegRobot(), LegMarkers(MakeLegRobot()), {}, elasticity)),

@@ -10,8 +10,8 @@
 
 namespace elastocal {
 
-/// Linear: two shared blocks (2 and 1 unknowns), three nuisance blocks of 2; five residual blocks a
-/// nuisance, one prior, one inactive block.
+/// A linear problem: two shared parameter blocks (2 and 1 unknowns) and three nuisance blocks of 2.
+/// There are five residual blocks for each nuisance block, one prior, and one inactive block.
 class LinearProblem : public LeastSquaresProblem {
  public:
   LinearProblem() {
@@ -46,7 +46,7 @@ class LinearProblem : public LeastSquaresProblem {
       residuals_.emplace_back((all_[i] * x).array() + static_cast<double>(i));
     }
   }
-  /// J x plus the block's number, row by row.
+  /// J x plus the number of the block in each row.
   const Eigen::VectorXd& Residual(int block) const override { return residuals_[block]; }
   const RowMajorMatrix& Jacobian(int block) const override { return own_[block]; }
   int First(int k) const {
@@ -63,7 +63,7 @@ class LinearProblem : public LeastSquaresProblem {
     return information;
   }
 
-  /// Of the cost at x.
+  /// Gradient of the cost at x.
   Eigen::VectorXd Gradient(const Eigen::VectorXd& x) const {
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(9);
     for (std::size_t i = 0; i < all_.size(); ++i) {
@@ -75,7 +75,7 @@ class LinearProblem : public LeastSquaresProblem {
   }
 
  private:
-  std::vector<RowMajorMatrix> all_, own_;  // own_: side by side, as the block lists them
+  std::vector<RowMajorMatrix> all_, own_;  // own_: side by side as the block lists them
   std::vector<Eigen::VectorXd> residuals_;
 };
 

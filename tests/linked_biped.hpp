@@ -15,14 +15,13 @@
 
 namespace elastocal {
 
-/// Tests on an invented pair of legs, whose knees are moved by actuators and whose ankles by two
-/// cranks and rods each.
+/// Tests on an invented pair of legs. Actuators move the knees, and two cranks with rods move each
+/// ankle.
 class LinkedBiped : public testing::Test {
  protected:
   std::filesystem::path File(const std::string& name) const { return scratch_.path() / name; }
 
-  /// A table in whose columns the joints have the names and values that `tree` and the recording
-  /// have.
+  /// Writes the recording as a table of the joints of `tree`, and reads it with the project.
   PostureTable ReadBack(const Recording& recording, const RobotTree& tree) const {
     WritePostureTable(File("table.csv"), recording, tree);
     return ReadPostureTable(File("table.csv"), project_);

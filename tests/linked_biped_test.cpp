@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Legs whose knees and ankles are moved by rods: tables and logs of their motors, recovery of the
-// truth, and a robot of MuJoCo from files to the calibrated rods.
+// truth, and a robot of MuJoCo, from files to calibrated rods.
 
 #include "tests/linked_biped.hpp"
 
@@ -43,7 +43,7 @@ TEST_F(LinkedBiped, ItsTablesHoldTheMotors) {
   EXPECT_NE(text.find(",left_ankle_outer,"), std::string::npos);
   EXPECT_EQ(text.find("left_ankle_pitch"), std::string::npos);
   EXPECT_LT((by_motors.recording.q - recording.q).cwiseAbs().maxCoeff(), 1e-11);
-  // Beside the motors, columns of the joints are not read.
+  // If a table has the motors, its columns of the joints are ignored.
   std::string both;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -51,7 +51,7 @@ TEST_F(LinkedBiped, ItsTablesHoldTheMotors) {
   }
   std::istringstream stream(both);
   EXPECT_EQ(ReadPostureTable(stream, "both", project_).recording.q, by_motors.recording.q);
-  // A controller that logs the joints has them from the nominal rods.
+  // A controller that logs joint positions computes them with the nominal rods.
   EXPECT_EQ(ReadBack(recording, unlinked_).recording.q, recording.q);
 
   Recording motors = recording;
@@ -82,7 +82,7 @@ TEST_F(LinkedBiped, ItsTablesHoldTheMotors) {
                     "'left_ankle_inner')"});
 }
 
-// What the motors do is what the joints do: their powers are the same.
+// The power of the motors is the power of the joints.
 TEST_F(LinkedBiped, ItsLogsHoldTheTorquesOfTheMotors) {
   Random random(3);
   const Eigen::VectorXd q = RandomPosture(project_.tree, random);
@@ -109,7 +109,7 @@ TEST_F(LinkedBiped, ItsLogsHoldTheTorquesOfTheMotors) {
   EXPECT_LT((read.positions - log.positions).cwiseAbs().maxCoeff(), 1e-11);
   EXPECT_LT((read.torques - log.torques).cwiseAbs().maxCoeff(), 1e-7);
 
-  // The same of a log of another format, whose columns are in the order of their names.
+  // A log in another format, with columns in the order of their names, gives the same.
   const JointLog taken = TakeJoints(motors, project_);
   for (std::size_t i = 0; i < taken.names.size(); ++i) {
     const auto found = std::find(log.names.begin(), log.names.end(), taken.names[i]);
@@ -119,7 +119,7 @@ TEST_F(LinkedBiped, ItsLogsHoldTheTorquesOfTheMotors) {
         taken.positions.col(column) - log.positions.col(found - log.names.begin());
     EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-11) << taken.names[i];
   }
-  // A joint has a torque where all motors have one.
+  // A joint has a torque if all its motors have one.
   JointLog some = motors;
   const auto outer = std::find(some.names.begin(), some.names.end(), "left_ankle_outer");
   some.torques.col(outer - some.names.begin()).setConstant(kNaN);
@@ -170,8 +170,7 @@ TEST_F(LinkedBiped, NoiseFreeTableGivesBackTheTruth) {
   EXPECT_GT(furthest(exact_rods), 5e-3);
 }
 
-/// Where the nominal rods have the joints, the rods of a file written by `calibrate` put them
-/// there.
+/// The joint positions that the calibrated rods in a file give where the nominal rods give `q`.
 Eigen::VectorXd PlacedByFile(const Project& project, const std::string& linkages,
                              const Eigen::VectorXd& q) {
   std::string text = ReadFile(project.file);
@@ -203,7 +202,7 @@ TEST_F(LinkedBiped, CalibratedRodsAreWrittenForControllers) {
 }
 
 // The actuator's foot is at (-60, 300) mm from the knee, its anchor at (-50, -20) mm in the shank,
-// which the knee turns: the lever is the distance of the knee from the line through both.
+// which the knee turns. The lever is the distance between the knee and the line through both.
 TEST_F(LinkedBiped, ThePlanKeepsRodsAwayFromDeadPoints) {
   const Linkage& knee = model_.tree.linkages[0];
   ASSERT_EQ(knee.name, "left_knee");
@@ -220,7 +219,7 @@ TEST_F(LinkedBiped, ThePlanKeepsRodsAwayFromDeadPoints) {
   }
   EXPECT_EQ(LeverShare(model_.tree, knee, knee.assembled), 1.0);
 
-  // At 100 degrees the line nearly passes by the knee.
+  // At 100 degrees, the line passes close to the knee.
   const StandingRobot robot(model_.tree, {}, {.position_margin = -1.0, .torque_share = 100.0});
   SampledMotion motion{100.0, NeutralPosture(model_.tree, 0.01).transpose(), {{}}};
   EXPECT_EQ(Broken(CheckMotion(robot, motion), robot.limits), std::nullopt);
@@ -231,7 +230,7 @@ TEST_F(LinkedBiped, ThePlanKeepsRodsAwayFromDeadPoints) {
 }
 
 /// A table of the motors and markers of a rigid robot that settles in MuJoCo under its weight.
-/// tests/study/linkage_study.py has whole recordings of elastic robots.
+/// tests/study/linkage_study.py tests whole recordings of elastic robots.
 class OfMujoco : public LinkedBiped {
  protected:
   static constexpr int kPostures = 60, kSeen = 50;
@@ -255,7 +254,7 @@ class OfMujoco : public LinkedBiped {
     return ReadBack(measured, project_.tree).recording;
   }
 
-  /// Largest distances of held-out markers: calibrated, the same with exact rods, not calibrated.
+  /// Largest distances of held-out markers: calibrated, calibrated with exact rods, uncalibrated.
   std::array<double, 3> HeldOut() const {
     const Recording recording = Record();
     std::vector<int> seen(kSeen), unseen(kPostures - kSeen);
@@ -279,7 +278,7 @@ class OfMujoco : public LinkedBiped {
   TrueRobot robot_;
 };
 
-// The truth has the model's form: the loops close on the nominal tree.
+// The truth has the model's form, because the loops close on the nominal tree.
 TEST_F(OfMujoco, RodsAreFoundFromMotors) {
   for (std::size_t k = 0; k < robot_.tree.joints.size(); ++k) {
     robot_.tree.joints[k].T_parent_child = robot_.described.joints[k].T_parent_child;
@@ -290,8 +289,8 @@ TEST_F(OfMujoco, RodsAreFoundFromMotors) {
   EXPECT_GT(uncalibrated, 1e-2);
 }
 
-// The loops close on the true tree, whose axes are displaced by 0.8 mm and 0.2 degrees each. What
-// the model leaves of that is of second order: 0.03 mm.
+// The loops close on the true tree, whose axes are displaced by 0.8 mm and 0.2 degrees each. The
+// model leaves errors of second order, 0.03 mm.
 TEST_F(OfMujoco, DisplacedAxesAreFoundAsDisplacedAnchors) {
   const auto [calibrated, exact_rods, uncalibrated] = HeldOut();
   EXPECT_LT(calibrated, 6e-5);
@@ -299,8 +298,8 @@ TEST_F(OfMujoco, DisplacedAxesAreFoundAsDisplacedAnchors) {
   EXPECT_GT(uncalibrated, 1e-2);
 }
 
-// Rods turn a joint by a multiple of what the motors say where a lever is off. That is the robot's
-// error, and no joint is accused of a wrong gain for it.
+// If a lever is wrong, rods turn a joint by a multiple of what the motors show. This is an error of
+// the robot, so no joint must be accused of a wrong gain.
 TEST_F(OfMujoco, LeversThatAreOffAreNoFaultsOfTheRecording) {
   Recording recording = Record();
   Random random(3);
@@ -313,8 +312,8 @@ TEST_F(OfMujoco, LeversThatAreOffAreNoFaultsOfTheRecording) {
   }
 }
 
-// An encoder that slips is one of a motor: its offset turns both joints of the ankle, by what the
-// rods make of it in each posture.
+// The encoder of a motor slips. Its offset turns both joints of the ankle by what the rods make of
+// it in each posture.
 TEST_F(OfMujoco, AnOffsetOfAMotorIsNamedAndCorrected) {
   Recording recording = Record();
   Random random(3);
@@ -340,7 +339,7 @@ TEST_F(OfMujoco, AnOffsetOfAMotorIsNamedAndCorrected) {
   EXPECT_EQ(DescribeFault(faults[0], tree, recording).find("left_ankle_outer: its positions are"),
             0u);
 
-  // The same in one trial, corrected by its name.
+  // The same offset in one trial, corrected by its name.
   Measurements measured;
   measured.calibration = recording;
   measured.calibration.trials = {{.name = "a", .chains = {}}, {.name = "b", .chains = {}}};

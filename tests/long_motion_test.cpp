@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Waist and markers by motions of many moments.
+// Fitting waist and markers to motions of many moments.
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace elastocal {
 namespace {
 
-/// So many moments where there was one.
+/// Makes each motion `times` times longer.
 void PlayLonger(int times, SlowLegs& legs) {
   for (PlayedTrial& trial : legs.robot.trials) {
     if (!trial.trial.moments) continue;
@@ -28,7 +28,7 @@ void PlayLonger(int times, SlowLegs& legs) {
   }
 }
 
-/// Waist and markers, the joints being the true ones.
+/// Refits waist and markers with the true joints.
 CalibrationResult RefitLegs(const SlowLegs& legs, const Recording& recording) {
   std::map<std::string, double> joints;
   for (int i = 0; i < legs.robot.model.parameter_count(); ++i) {
@@ -38,10 +38,10 @@ CalibrationResult RefitLegs(const SlowLegs& legs, const Recording& recording) {
   return RefitExternals(legs.robot.model, recording, legs.robot.base, {}, joints);
 }
 
-// Most moments of a long motion tell hardly more of waist and markers: a part of them tells noise
-// and markers, and few updates with all of them name what is wrong in any.
+// Most moments of a long motion add little about waist and markers. A part of the moments gives
+// noise and markers. A few updates with all moments name any errors.
 TEST(LongMotion, FewUpdatesRefitMarkersToLongMotions) {
-  constexpr int kWrong = 200;  // a moment that is not in the part
+  constexpr int kWrong = 200;  // a moment outside of that part
   SlowLegs legs;
   PlayLonger(3, legs);
   Recording recording = RecordWays(legs, 0.1e-3, Eigen::Vector3d::Zero(), 1);
@@ -67,7 +67,8 @@ TEST(LongMotion, FewUpdatesRefitMarkersToLongMotions) {
   EXPECT_LT(std::sqrt(off / expected), 2.0) << "in standard deviations";
 }
 
-// In the motion of one leg, two of 15 markers are elsewhere. Squares take them for noise.
+// During the motion of one leg, two of 15 markers are displaced. Least squares would take this for
+// noise.
 TEST(LongMotion, MarkersWrongThroughoutAMotionAreNoNoise) {
   SlowLegs legs;
   PlayLonger(2, legs);

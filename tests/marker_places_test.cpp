@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What measured places of markers tell: the last frame, which no marker tells otherwise.
+// Measured places of markers tell the last frame, which markers in motion do not tell.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -46,7 +46,7 @@ class MarkerPlaces : public InventedArm {
     return CalibrateWithPlaces(places, robot, recording, options, warnings_);
   }
 
-  /// Of the last joint: turn about its axis, and place along it.
+  /// Parameters of the last joint: the turn about its axis and the place along it.
   std::vector<int> LastFrame() const {
     const int link = FindLink(model_.tree, "tool");
     const int body = model_.tree.links[static_cast<std::size_t>(link)].body;
@@ -80,7 +80,7 @@ TEST_F(MarkerPlaces, TellTheLastFrameAsWellAsTheySay) {
       EXPECT_LT(known.sd[i], 0.5 * open.sd[i]);
     }
   }
-  // Of 80 numbers: chi-square with 80 degrees of freedom is within these at 99.9 %.
+  // Chi-square with 80 degrees of freedom is within these bounds with a probability of 99.9 %.
   EXPECT_GT(squares / count, 0.55);
   EXPECT_LT(squares / count, 1.60);
   EXPECT_GE(hits, 70);
@@ -110,9 +110,9 @@ TEST_F(MarkerPlaces, ThatScatterByMoreThanTheySayCountLess) {
   }
 }
 
-// With the true joints a refit is as far from the places as these were measured; with the zero of
-// the last joint off by 40 mrad (2 mm at a marker) the markers of the tool are not, and the others
-// still are.
+// With the true joints, a refit is as far from the places as their measurement errors. If the zero
+// of the last joint is off by 40 mrad (2 mm at a marker), the markers of the tool are further off,
+// and the others are not.
 TEST_F(MarkerPlaces, ARefitSaysHowFarItIsFromThem) {
   constexpr int kRobots = 20;
   const Parameter& last_zero = model_.parameters[static_cast<std::size_t>(LastFrame()[0])];
@@ -158,7 +158,7 @@ TEST_F(MarkerPlaces, ARefitSaysHowFarItIsFromThem) {
   EXPECT_NEAR(squares / numbers, 1.0, 0.2);
 }
 
-// Two measurements of one number: the mean weighted by the inverse variances.
+// Two measurements of one number give their mean, weighted by the inverse variances.
 TEST_F(MarkerPlaces, BesideAnEarlierCalibrationBothCount) {
   const Marker& marker = model_.markers.front();
   EarlierEstimate known{{"joint.theta", "marker." + marker.name + ".y"},
@@ -171,7 +171,7 @@ TEST_F(MarkerPlaces, BesideAnEarlierCalibrationBothCount) {
   ASSERT_EQ(known.names.size(), 4u);
   EXPECT_NEAR(known.mean[1], (3e-3 / 1e-6 + 5e-3 / 4e-6) / (1.0 / 1e-6 + 1.0 / 4e-6), 1e-12);
   EXPECT_NEAR(known.covariance(1, 1), 0.8e-6, 1e-15);
-  EXPECT_NEAR(known.mean[0], 0.1 + 5e-6 / 5e-6 * 2e-3, 1e-12);  // moved along by its correlation
+  EXPECT_NEAR(known.mean[0], 0.1 + 5e-6 / 5e-6 * 2e-3, 1e-12);  // follows by its correlation
   EXPECT_NEAR(known.mean[3], 1e-3, 1e-12);
   EXPECT_NEAR(known.covariance(3, 3), 4e-6, 1e-15);
   EarlierEstimate places;
@@ -179,7 +179,7 @@ TEST_F(MarkerPlaces, BesideAnEarlierCalibrationBothCount) {
   EXPECT_FALSE(KnowsRobot(places));
 }
 
-// Who exports is told which frames nothing has told, and what would.
+// The export says which frames are undetermined, and what would determine them.
 TEST(OpenFrames, AreThoseOfLastJointsThatNothingTold) {
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   const auto parameter = [](const char* name, ParameterStatus status, double sd) {
@@ -235,7 +235,7 @@ TEST_F(MarkerPlacesFile, IsReadAsItIsWritten) {
   }
 }
 
-// A sole is joined to its ankle by a fixed joint: places may be seen from either.
+// A fixed joint connects a sole to its ankle, so places may be relative to either link.
 TEST_F(MarkerPlacesFile, APlaceMayBeSeenFromAnotherLinkOfTheBody) {
   const auto read = Read("marker,x_mm,y_mm,z_mm,sd_mm,link\nLFOOT_1,10,20,30,0.5,left_sole_link\n");
   const Marker& marker = *std::ranges::find(project_.markers, "LFOOT_1", &Marker::name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot that gives way, by a project that holds it rigid.
+// A robot gives way, but its project holds it rigid.
 #include "elastocal/mistakes/missed_springs.hpp"
 
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Estimates from moments of a motion, which share their model error with their neighbours in time.
+// Estimates from moments of a motion, whose model errors are correlated in time.
 
 #include <algorithm>
 #include <cmath>
@@ -24,13 +24,13 @@ namespace {
 
 constexpr int kMoments = 300;
 constexpr double kRate = 10.0;         // Hz
-constexpr double kCorrelation = 0.95;  // of the model error, from one moment to the next
-constexpr double kShared = 0.5e-3;     // m, of the model error
-constexpr double kNoise = 0.1e-3;      // m, of single markers
+constexpr double kCorrelation = 0.95;  // of the model error between successive moments
+constexpr double kShared = 0.5e-3;     // m, standard deviation of the model error
+constexpr double kNoise = 0.1e-3;      // m, noise of each marker
 constexpr int kCycles = 10;
 
-/// Of the offsets of joints whose names begin so: how many of their intervals hold the truth, of
-/// how many.
+/// Number of intervals that hold the truth, and of all, for offsets of joints whose names begin
+/// like this.
 std::pair<int, int> OffsetsInside(const ErrorModel& model, const Eigen::VectorXd& truth,
                                   const CalibrationResult& result, const std::string& joints = "") {
   std::pair<int, int> inside = {0, 0};
@@ -45,7 +45,8 @@ std::pair<int, int> OffsetsInside(const ErrorModel& model, const Eigen::VectorXd
   return inside;
 }
 
-/// Intervals that hold the truth, and how many do where the moments are taken for independent.
+/// Numbers of intervals, of those that hold the truth, and of those that do if moments count as
+/// independent.
 struct Tally {
   int inside = 0, all = 0, independent = 0;
 
@@ -62,8 +63,8 @@ struct Tally {
   }
 };
 
-/// An arm that moves slowly while it is recorded ten times a second. Each body is displaced by a
-/// model error of its own, a first-order process in time.
+/// An arm that moves slowly and is recorded ten times a second. Each body is displaced by its own
+/// model error, a first-order process in time.
 struct SlowArm {
   Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
   ErrorModel model = MakeErrorModel(project.tree, project.markers, project.placement);
@@ -93,8 +94,8 @@ struct SlowArm {
     return recording;
   }
 
-  /// The same arm goes through one cycle of 30 moments ten times. The error of a body is drawn for
-  /// each moment of the cycle, and is the same each time.
+  /// The arm repeats a cycle of 30 moments ten times. The error of a body is drawn for each moment
+  /// of the cycle and is the same in each repetition.
   Recording RecordCycles(std::uint64_t seed) const {
     constexpr int kCycle = kMoments / kCycles;
     Random random(seed);
@@ -110,15 +111,15 @@ struct SlowArm {
     return recording;
   }
 
-  /// A displacement of each body, m.
+  /// Draws a displacement of each body, m.
   Eigen::Matrix3Xd DrawShared(Random& random, double sd) const {
     Eigen::Matrix3Xd shared(3, model.tree.body_count());
     for (auto&& of_body : shared.colwise()) of_body = random.NormalVector(3, sd);
     return shared;
   }
 
-  /// Markers as they are at the recording's positions, displaced by what bodies share in each
-  /// moment, with noise.
+  /// Sets the markers to where the recording's positions put them, with the displacements of their
+  /// bodies in each moment and with noise.
   void See(const std::vector<Eigen::Matrix3Xd>& shared, Random& random,
            Recording& recording) const {
     const Geometry geometry = ApplyErrors(model, truth);
@@ -138,7 +139,7 @@ struct SlowArm {
   }
 };
 
-// Taken for independent, the moments promise several times what they hold.
+// If the moments counted as independent, intervals would be several times too short.
 TEST(Motion, IntervalsHoldTheTruthWhereNeighboursShareTheirError) {
   const SlowArm arm;
   Tally tally;
@@ -149,7 +150,7 @@ TEST(Motion, IntervalsHoldTheTruthWhereNeighboursShareTheirError) {
     EXPECT_NEAR(result.noise.motion[0].bodies.lag_one, kCorrelation, 0.08);
     EXPECT_GT(result.noise.motion[0].bodies.samples_each, 8.0);
     EXPECT_LT(result.noise.motion[0].bodies.samples_each, 80.0);
-    recording.time_s.resize(0);  // the same numbers, as postures that know nothing of each other
+    recording.time_s.resize(0);  // the same numbers as postures without times
     const CalibrationResult independent = arm.Estimate(recording);
     EXPECT_TRUE(independent.noise.motion.empty());
     tally.Add(OffsetsInside(arm.model, arm.truth, result),
@@ -158,8 +159,8 @@ TEST(Motion, IntervalsHoldTheTruthWhereNeighboursShareTheirError) {
   tally.Expect(0.88, 0.5);
 }
 
-// Errors that are drawn anew for each moment of a cycle are not correlated with their neighbours',
-// but with themselves a cycle later.
+// Errors that are drawn for each moment of a cycle are not correlated with their neighbours, but
+// with themselves one cycle later.
 TEST(Motion, AMotionThatRepeatsItselfTellsNoMoreThanOnce) {
   const SlowArm arm;
   Tally tally;
@@ -176,8 +177,8 @@ TEST(Motion, AMotionThatRepeatsItselfTellsNoMoreThanOnce) {
   tally.Expect(0.85, 0.8);
 }
 
-// The pose of the waist is unknown in each moment, so that bodies share no error; what the
-// constraint of the standing foot leaves does.
+// The pose of the waist is unknown in each moment, so that errors of bodies are not correlated. The
+// residuals of the standing foot's constraint are.
 TEST(Motion, IntervalsOfLegsHoldTheTruthWhereTheConstraintErrsAsItsNeighbours) {
   const SlowLegs legs;
   Tally tally;
@@ -187,7 +188,7 @@ TEST(Motion, IntervalsOfLegsHoldTheTruthWhereTheConstraintErrsAsItsNeighbours) {
       return Calibrate(legs.robot.model, recording, legs.robot.base, ModelKind::kFull, {});
     };
     const CalibrationResult result = estimate();
-    ASSERT_EQ(result.noise.motion.size(), 3u);  // arms, and each leg
+    ASSERT_EQ(result.noise.motion.size(), 3u);  // arms, and each of the legs
     for (const std::size_t leg : {1u, 2u}) {
       EXPECT_NEAR(result.noise.motion[leg].waist.lag_one, SlowLegs::kKept, 0.08);
       EXPECT_GT(result.noise.motion[leg].waist.samples_each, 10.0);
@@ -200,7 +201,7 @@ TEST(Motion, IntervalsOfLegsHoldTheTruthWhereTheConstraintErrsAsItsNeighbours) {
   tally.Expect(0.9, 0.8);
 }
 
-// Taken for independent, moments make knocks of what the model does not know.
+// If moments counted as independent, model errors would be taken for knocks.
 TEST(Motion, ErrorsThatLastAreNoKnocks) {
   const SlowLegs legs;
   std::vector<LabelCluster> clusters;
@@ -229,7 +230,7 @@ TEST(Motion, ErrorsThatLastAreNoKnocks) {
   EXPECT_NEAR(knocks[0].distance, 4e-3, 1e-3);
 }
 
-// What shares its error with a left-out moment is left out as well.
+// Moments whose errors are correlated with a left-out moment are left out, too.
 TEST(Motion, FoldsLeaveStretchesOut) {
   const SlowArm arm;
   const Recording recording = arm.Record(1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A calibration as the prior of another one, what a few postures of another day tell of it, and the
-// pattern that a wrong scale of the cameras leaves in it.
+// A calibration as the prior of another one: what a few postures of another day tell about it, and
+// the pattern of a wrong scale of the cameras.
 
 #include "elastocal/validation/moved_joints.hpp"
 
@@ -24,7 +24,7 @@ const Eigen::Vector3d kInclined(0.28, 0.0, 0.0);  // rad
 
 class KnownArm : public InventedArm {
  protected:
-  /// Markers are glued on anew each day.
+  /// Records with markers that are glued on anew each day.
   Recording Record(Eigen::VectorXd truth, int postures, std::uint64_t seed) const {
     truth += DrawErrors(model_, All(), {{ParameterKind::kMarker, 2e-3}}, seed);
     return MakeSyntheticRecording(model_, truth, {.postures = postures, .seed = seed});
@@ -52,7 +52,7 @@ class KnownArm : public InventedArm {
   struct CalibratedArm {
     std::uint64_t seed;
     Eigen::VectorXd truth;
-    EarlierEstimate earlier;  ///< by thirty postures
+    EarlierEstimate earlier;  ///< from thirty postures
   };
   CalibratedArm Calibrated(int robot) const {
     const auto seed = 10 * static_cast<std::uint64_t>(robot);
@@ -69,7 +69,7 @@ class KnownArm : public InventedArm {
   }
 
   double RobotError(const CalibrationResult& result, const Eigen::VectorXd& truth) const {
-    // Of the base parameters, by what they do to the markers.
+    // Error of the base parameters by their effect on the markers.
     const Recording other =
         MakeSyntheticRecording(model_, truth, {.postures = 40, .marker_sd = 0.0, .seed = 99});
     std::map<std::string, double> errors;
@@ -117,7 +117,7 @@ TEST_F(KnownArm, OfWhichNothingIsInDoubtIsKept) {
   }
 }
 
-// A hundred postures and ten of another day, by which the first calibration is updated.
+// The first calibration, from a hundred postures, is updated by ten of another day.
 TEST_F(KnownArm, UpdatedByTenPosturesIsNearlyAsGoodAsAllTogether) {
   double updated = 0.0, first = 0.0, few = 0.0;
   for (int robot = 0; robot < 10; ++robot) {
@@ -138,7 +138,7 @@ TEST_F(KnownArm, UpdatedByTenPosturesIsNearlyAsGoodAsAllTogether) {
   RecordProperty("few_nm", static_cast<int>(1e8 * few));
 }
 
-// Zeros that may have drifted by a degree in all the days.
+// Zeros may have drifted by a degree in all these days.
 TEST_F(KnownArm, ZerosHaveDriftedForAsManyDaysAsTheDataAsk) {
   constexpr double kDays = 64.0;
   const Eigen::VectorXd truth = Truth(4);
@@ -178,7 +178,7 @@ TEST_F(KnownArm, ZerosHaveDriftedForAsManyDaysAsTheDataAsk) {
   }
   EXPECT_LE(days_of(truth, 0.0), 1.01);
   EXPECT_GE(days_of(drifted, 0.0), 15.9);
-  // Of what nothing is known the evidence is no number: all days count.
+  // If nothing is known, the evidence is no number, and all days count.
   EXPECT_NEAR(days_of(truth, std::numeric_limits<double>::infinity()), kDays, 1e-6);
 }
 
@@ -213,13 +213,14 @@ TEST_F(KnownArm, EightPosturesTellWhichJointHasMoved) {
   EXPECT_GE(named, kRobots - 2);  // 19 of 20
   EXPECT_GE(covered, named - 4);
   EXPECT_LE(others, 2);
-  EXPECT_LE(false_alarms, 5);  // 5 % are 2; 6 or more would have a chance of 1 %
+  EXPECT_LE(false_alarms, 5);  // 2 (5 %) are expected; the probability of 6 or more is 1 %
   RecordProperty("named", named);
   RecordProperty("false_alarms", false_alarms);
 }
 
 TEST(SmallestChange, IsWhatOutweighsTheOddsAndTheChoice) {
-  // z^2 / 2 = log(2 . 7) + log 3 + log(1 + 100^2) / 2, and 1.28 for nine times in ten.
+  // z^2 / 2 = log(2 . 7) + log 3 + log(1 + 100^2) / 2, plus 1.28 for a detection in nine of ten
+  // cases.
   EXPECT_NEAR(SmallestChange(0.01, 1.0, 7), 0.01 * (4.085 + 1.28), 1e-5);
   EXPECT_TRUE(std::isinf(SmallestChange(2.0, 1.0, 7)));
 }
@@ -240,12 +241,12 @@ TEST_F(KnownArm, TheSmallestChangeIsSeenNineTimesInTen) {
     }
   }
   EXPECT_GE(seen, 30);     // 36 are expected, with a standard deviation of 2
-  EXPECT_LE(of_half, 10);  // 3
+  EXPECT_LE(of_half, 10);  // 3 are expected
   RecordProperty("seen", seen);
   RecordProperty("of_half", of_half);
 }
 
-// None of them is more probable than another until the others are known to have moved.
+// Each of them becomes more probable only when the others are known to have moved.
 TEST_F(KnownArm, JointsThatMovedByTheSameAngleAreAllNamed) {
   int named = 0, others = 0;
   for (int robot = 0; robot < 10; ++robot) {
@@ -266,7 +267,7 @@ TEST_F(KnownArm, JointsThatMovedByTheSameAngleAreAllNamed) {
   EXPECT_LE(others, 1);
 }
 
-// All that it says is off by three times its standard deviations.
+// All its values are off by three times their standard deviations.
 TEST_F(KnownArm, AnEarlierCalibrationThatIsTooSureAccusesNoJoint) {
   constexpr int kRobots = 20;
   int accused = 0, named = 0, widened = 0, sound = 0;
@@ -297,7 +298,7 @@ TEST_F(KnownArm, AnEarlierCalibrationThatIsTooSureAccusesNoJoint) {
   RecordProperty("named", named);
 }
 
-// Errors of single lengths have no common pattern; a wrong scale of the cameras has.
+// Errors of single lengths have no common pattern. A wrong scale of the cameras has one.
 TEST_F(KnownArm, AWrongScaleOfAllPositionsIsToldFromErrorsOfSingleLengths) {
   constexpr int kRobots = 40;
   double squares = 0.0;
@@ -316,20 +317,21 @@ TEST_F(KnownArm, AWrongScaleOfAllPositionsIsToldFromErrorsOfSingleLengths) {
     found += FindWrongScale(Fit(recording), {}) ? 1 : 0;
   }
   EXPECT_GE(found, kRobots - 2);
-  // Deviations in standard deviations: of 40, chi-square with one in a thousand on either side.
+  // Deviations in standard deviations; chi-square of 40 exceeds each bound with a probability of
+  // one in a thousand.
   EXPECT_GT(squares / kRobots, 0.45);
   EXPECT_LT(squares / kRobots, 1.85);
 }
 
-// The axis of the elbow is inclined to the shoulder's by 16 degrees in the plane of both, as many
-// robots have it at their shoulders: they meet half a metre and more away. Errors of the joints'
-// places and directions, which a robot really has, move that point by centimetres.
+// The elbow's axis is inclined to the shoulder's by 16 degrees in their common plane. Many robots
+// have such axes at their shoulders. The axes meet at least half a metre away. Real errors of the
+// places and directions of joints move that point by centimetres.
 TEST_F(KnownArm, InclinedAxesLookLikeNoScale) {
   constexpr int kRobots = 40;
   RobotTree tree = model_.tree;
   Joint& elbow = tree.joints[static_cast<std::size_t>(FindJoint(tree, "elbow_joint"))];
   elbow.T_parent_child.linear() = RotationFromVector(kInclined) * elbow.T_parent_child.linear();
-  // The default has beta there, and no far normal.
+  // By default, a joint with such axes has beta and no far common normal.
   const PlacementOptions far_normals{.longest_lever_m = 1e9};
   const ErrorModel nominal = MakeErrorModel(tree, model_.markers, far_normals);
   double furthest = 0.0;

@@ -20,8 +20,8 @@ std::string ReadText(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// Adds compiler settings and the floating joint at the root behind the opening `<robot>` tag.
-/// Static links stay bodies of their own so that each can be asked for its pose.
+/// Adds compiler settings and the floating joint at the root after the opening `<robot>` tag.
+/// Static links remain separate bodies, so that each has a pose.
 std::string AddFloatingRoot(std::string urdf, const std::string& root_link) {
   const std::size_t robot = urdf.find("<robot");
   if (robot == std::string::npos) throw std::runtime_error("no <robot> element");
@@ -34,7 +34,7 @@ std::string AddFloatingRoot(std::string urdf, const std::string& root_link) {
 }
 
 mjModel* Compile(const std::string& urdf) {
-  const auto files = std::make_unique<mjVFS>();  // two megabytes: too large for the stack
+  const auto files = std::make_unique<mjVFS>();  // two megabytes are too large for the stack
   mj_defaultVFS(files.get());
   const char* name = "robot.urdf";
   mj_makeEmptyFileVFS(files.get(), name, static_cast<int>(urdf.size()) + 1);
@@ -85,7 +85,8 @@ double MujocoOracle::GravityTorque(const std::string& joint) const {
 }
 
 double MujocoOracle::StandingTorque(const std::string& joint, const std::string& fixed_link) const {
-  // The floor's wrench on the link is the one that leaves nothing to the floating joint, the first.
+  // The floor's wrench on the link is chosen so that nothing is left for the floating joint, the
+  // first one.
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Jacobian J(6, model_->nv);
   mj_jacBody(model_.get(), data_.get(), J.data(), J.data() + 3 * model_->nv, LinkId(fixed_link));
@@ -118,7 +119,7 @@ void MujocoOracle::SetRootMotion(const Eigen::Isometry3d& T_world_root,
                                  const Eigen::Vector3d& velocity, const Eigen::Vector3d& turn,
                                  const Eigen::Vector3d& acceleration,
                                  const Eigen::Vector3d& turn_rate) {
-  // MuJoCo's free joint: linear parts in the world's axes, angular ones in the body's.
+  // In MuJoCo's free joint, linear parts are in the world's axes and angular ones in the body's.
   const Eigen::Quaterniond attitude(T_world_root.linear());
   const Eigen::Vector3d position = T_world_root.translation();
   const Eigen::Matrix3d R_root_world = T_world_root.linear().transpose();

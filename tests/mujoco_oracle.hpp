@@ -10,23 +10,23 @@
 
 namespace elastocal {
 
-/// MuJoCo's opinion of a URDF, for comparison: kinematics, point Jacobians and gravity torques by
-/// names of the URDF. Shares no code with the library.
+/// MuJoCo's results for a URDF, for comparison: kinematics, point Jacobians and gravity torques, by
+/// the URDF's names. It shares no code with the library.
 ///
-/// MuJoCo's URDF reader welds the root link to the world and drops its mass, so the root is joined
-/// to a link `world` by a floating joint, which stays at the identity: the frame of the root link
-/// is the world's. Constraints (limits, contacts) and passive forces (damping) are disabled.
+/// MuJoCo's URDF reader welds the root link to the world and drops its mass. So a floating joint,
+/// which stays at the identity, joins the root to a link `world`: the frame of the root link is the
+/// world's. Constraints (limits, contacts) and passive forces (damping) are disabled.
 ///
-/// MuJoCo 2.2.2 knows no mimic joints: each is a joint of its own here, and the caller sets its
-/// position and sums its torque or Jacobian column by the chain rule.
+/// MuJoCo 2.2.2 has no mimic joints. Each of them is a joint of its own here, so that the caller
+/// sets its position and sums its torque or Jacobian column by the chain rule.
 class MujocoOracle {
  public:
-  /// Throws std::runtime_error with MuJoCo's message where it does not take the file.
+  /// Throws std::runtime_error with MuJoCo's message if it refuses the file.
   MujocoOracle(const std::filesystem::path& urdf, const std::string& root_link);
 
-  /// Position of a joint, rad or m. `Update` after the last one.
+  /// Sets the position of a joint, rad or m. Call `Update` after the last one.
   void SetPosition(const std::string& joint, double position);
-  /// Acceleration of gravity in the root link's frame, m/s^2. `Update` afterwards.
+  /// Sets the acceleration of gravity in the root link's frame, m/s^2. Call `Update` afterwards.
   void SetGravity(const Eigen::Vector3d& gravity);
   /// Evaluates the model at rest.
   void Update();
@@ -35,30 +35,30 @@ class MujocoOracle {
   Eigen::Isometry3d LinkPose(const std::string& link) const;
   /// Torque (or force) by which the joint's motor holds the robot still, N.m or N.
   double GravityTorque(const std::string& joint) const;
-  /// The same while the robot stands on `fixed_link` alone, which is welded to the floor.
+  /// The same torque while the robot stands on `fixed_link` alone, which is welded to the floor.
   double StandingTorque(const std::string& joint, const std::string& fixed_link) const;
   /// Derivative of a point fixed to a link [its position in the root's frame, m] with respect to
   /// the position of a joint.
   Eigen::Vector3d PointDerivative(const std::string& joint, const std::string& link,
                                   const Eigen::Vector3d& p_root_point) const;
   double TotalMass() const;
-  /// Of a link, about its centre of mass in the link's axes, as MuJoCo has it: it keeps principal
-  /// moments and axes, which it finds to six digits or so.
+  /// Inertia of a link about its centre of mass in the link's axes, as MuJoCo stores it: by
+  /// principal moments and axes, which are accurate to about six digits.
   Eigen::Matrix3d LinkInertia(const std::string& link) const;
 
-  /// A motion in the world: of the root link (velocity and acceleration of its origin, angular ones
-  /// in the world's axes) and of a joint. `UpdateInverse` evaluates mj_inverse.
+  /// Sets the motion of the root link in the world (velocity and acceleration of its origin,
+  /// angular ones in the world's axes) or of a joint. `UpdateInverse` evaluates mj_inverse.
   void SetRootMotion(const Eigen::Isometry3d& T_world_root, const Eigen::Vector3d& velocity,
                      const Eigen::Vector3d& turn, const Eigen::Vector3d& acceleration,
                      const Eigen::Vector3d& turn_rate);
   void SetMotion(const std::string& joint, double position, double velocity, double acceleration);
   void UpdateInverse();
   double InverseTorque(const std::string& joint) const;
-  /// On the root link, in the world's axes, the moment about the root's origin.
+  /// Force on the root link and moment about its origin, in the world's axes.
   Eigen::Vector3d InverseForce() const;
   Eigen::Vector3d InverseMoment() const;
 
-  /// For benchmarks.
+  /// Access for benchmarks.
   const mjModel* model() const { return model_.get(); }
   mjData* data() { return data_.get(); }
   int LinkId(const std::string& link) const;

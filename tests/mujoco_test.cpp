@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kinematics, Jacobian and statics of the robot layer against MuJoCo, an independent
+// Compares kinematics, Jacobian and statics of the robot layer with MuJoCo, an independent
 // implementation.
 #include <filesystem>
 #include <string>
@@ -27,7 +27,7 @@ class AgainstMujoco : public testing::TestWithParam<const char*> {
         tree_(ReadUrdf(file_)),
         mujoco_(file_, tree_.links[0].name) {}
 
-  /// Puts both models into a random posture.
+  /// Sets both models to a random posture.
   Eigen::VectorXd NextPosture() {
     const Eigen::VectorXd q = RandomPosture(tree_, random_);
     for (const Joint& joint : tree_.joints) {
@@ -36,7 +36,8 @@ class AgainstMujoco : public testing::TestWithParam<const char*> {
     return q;
   }
 
-  /// MuJoCo's torques by coordinate: a mimic joint's counts with its multiplier (chain rule).
+  /// MuJoCo's torques by coordinate. A mimic joint's torque counts with its multiplier (chain
+  /// rule).
   Eigen::VectorXd MujocoTorques() const {
     Eigen::VectorXd torques = Eigen::VectorXd::Zero(tree_.coordinate_count());
     for (const Joint& joint : tree_.joints) {
@@ -54,8 +55,8 @@ class AgainstMujoco : public testing::TestWithParam<const char*> {
 constexpr int kPostures = 100;
 
 TEST_P(AgainstMujoco, LinkPoses) {
-  // Both work in double precision on a robot of a metre or two: rounding is near 1e-15, so 1e-9 m
-  // and rad leave no room for a different model.
+  // Both use double precision for a robot of a metre or two. Rounding is about 1e-15, so that 1e-9
+  // m and rad leave no room for a different model.
   for (int i = 0; i < kPostures; ++i) {
     const std::vector<Transform> T_root_link = LinkTransforms(tree_, NextPosture());
     mujoco_.Update();
@@ -70,8 +71,8 @@ TEST_P(AgainstMujoco, LinkPoses) {
 }
 
 TEST_P(AgainstMujoco, JacobianOfJointPositions) {
-  // An error of theta (r where the joint slides) moves a marker as the joint itself does: the only
-  // columns that MuJoCo knows. A marker on every moving link.
+  // An error of theta (r if the joint slides) moves a marker like the joint itself. MuJoCo knows
+  // only these columns. Each moving link has a marker.
   std::vector<Marker> markers;
   for (std::size_t k = 0; k < tree_.links.size(); ++k) {
     if (tree_.links[k].body == 0) continue;
@@ -90,7 +91,7 @@ TEST_P(AgainstMujoco, JacobianOfJointPositions) {
       for (int m = 0; m < model.marker_count(); ++m) {
         const Eigen::Vector3d expected = mujoco_.PointDerivative(
             joint.name, tree_.links[markers[m].link].name, jacobian.Position(m));
-        // Levers of a metre: rounding near 1e-15 m/rad.
+        // Levers are about a metre, and rounding is about 1e-15 m/rad.
         EXPECT_LT((dense.block<3, 1>(3 * m, column) - expected).norm(), 1e-9)
             << joint.name << ", " << markers[m].name;
       }
@@ -99,7 +100,7 @@ TEST_P(AgainstMujoco, JacobianOfJointPositions) {
 }
 
 TEST_P(AgainstMujoco, GravityTorques) {
-  // Torques reach some 100 N.m, where rounding is near 1e-13.
+  // Torques reach some 100 N.m, where rounding is about 1e-13.
   for (int i = 0; i < kPostures; ++i) {
     const Eigen::VectorXd torques = GravityTorques(tree_, NextPosture());
     mujoco_.Update();
@@ -118,7 +119,7 @@ TEST_P(AgainstMujoco, GravityTorquesOfALeaningWaist) {
 }
 
 TEST_P(AgainstMujoco, TorquesOfARobotThatStandsOnOneOfItsLinks) {
-  // As above. Any link may stand, a foot among them.
+  // The tolerance is as above. The robot stands on any link, for instance a foot.
   const Eigen::Vector3d gravity(1.0, -0.5, -9.7);
   mujoco_.SetGravity(gravity);
   for (int i = 0; i < kPostures; ++i) {
@@ -136,8 +137,9 @@ TEST_P(AgainstMujoco, TorquesOfARobotThatStandsOnOneOfItsLinks) {
 }
 
 TEST_P(AgainstMujoco, InverseDynamicsOfAFloatingRobot) {
-  // Speeds of some rad/s, accelerations of some ten: torques and forces reach some thousand, where
-  // rounding is near 1e-12. Inertias are MuJoCo's, which differ from the file's by 1e-6 of them.
+  // With speeds of some rad/s and accelerations of some ten, torques and forces reach some
+  // thousand, where rounding is about 1e-12. The inertias are MuJoCo's, which differ from the
+  // file's by a millionth.
   RobotTree tree = tree_;
   for (Link& link : tree.links) {
     if (link.mass == 0.0) continue;

@@ -12,7 +12,8 @@
 namespace elastocal {
 namespace {
 
-/// Touches of the left hand, during which the right arm rests, then those of the right.
+/// First the touches of the left hand, during which the right arm rests, then those of the right
+/// hand.
 Observations LeftThenRight(const Observations& mixed, const RobotTree& tree) {
   const auto is_left = [&](int i) {
     return mixed.all[static_cast<std::size_t>(i)].instrument == 0;
@@ -34,7 +35,7 @@ bool AnyFrozen(const std::vector<ObservationFault>& faults) {
   });
 }
 
-// The left hand's touches are the worse ones, but the right arm that rests does not move them.
+// The left hand's touches have larger errors, but the resting right arm does not move that hand.
 TEST(ObservationFaults, AnArmThatRestsWhileTheOtherTouchesIsNotFrozen) {
   const ObservedRobot model = MakeTouchingBiped();
   Random random(4);

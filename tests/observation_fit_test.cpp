@@ -21,13 +21,13 @@ double Largest(const std::vector<Eigen::VectorXd>& left) {
   return largest;
 }
 
-/// A fit to data without noise.
+/// Fits data without noise.
 ObservationFit FitExactly(const ObservedRobot& model, const Observations& seen) {
   ObservationFit start = StartFit(model, seen);
   for (std::size_t s = 0; s < model.setup.sources.size(); ++s) {
     if (model.setup.sources[s].role != Source::Role::kNoise) continue;
-    // Less would drown what gravity hardly tells in roundings of the information; a pixel is about
-    // 2 mrad, so that 1e-6 of it is still finer than 1e-7 m or rad.
+    // With less noise, rounding would drown the weak information of gravity. A pixel is about 2
+    // mrad, so that 1e-6 of it is finer than 1e-7 m or rad.
     switch (model.setup.sources[s].unit) {
       case SourceUnit::kNone:
         start.spread.sd[s] = 1e-4;
@@ -48,12 +48,12 @@ TEST(ObservationFit, PredictsOtherTouchesExactlyAfterTouchesWithoutNoise) {
   const ObservedValues truth = RandomTruth(model, 1, random);
   const Observations seen = SimulateTouches(model, truth, 60, 1, Eigen::Vector3d::Zero(), random);
   const Observations others = SimulateTouches(model, truth, 10, 1, Eigen::Vector3d::Zero(), random);
-  // 180 numbers determine all that touches see.
+  // 180 numbers determine everything that touches depend on.
   const ObservationFit fit = FitExactly(model, seen);
   EXPECT_LT(Largest(LeftOf(model, others, fit.values)), 1e-8);
 }
 
-/// Each kind by itself and all together, on feet and with a root that is held still.
+/// Each kind of instrument alone, and all together, on feet and with a held root.
 class EveryKind : public testing::TestWithParam<std::pair<InstrumentedBiped::Stance, int>> {};
 
 TEST_P(EveryKind, IsPredictedExactlyAfterMeasurementsWithoutNoise) {
@@ -78,7 +78,8 @@ INSTANTIATE_TEST_SUITE_P(ObservationFit, EveryKind,
                                          std::pair(kOnFeet, InstrumentedBiped::kAll),
                                          std::pair(kFixed, InstrumentedBiped::kAll)));
 
-/// How many numbers of the robot the observations determine beside all quantities, prior aside.
+/// Number of independent parameters of the robot that the observations determine besides all
+/// quantities, without the prior.
 int RankOfRobot(const InstrumentedBiped& biped, const Observations& observations) {
   ObservationFit fit = StartFit(biped.model, observations);
   ObservationResiduals residuals(biped.model, observations, fit.loads, fit.spread, fit.weights, {},
@@ -133,7 +134,7 @@ TEST(ObservationFit, TouchesAndInertialUnitsDetermineMoreThanEither) {
   EXPECT_GT(both, units) << touches << " " << units << " " << both;
 }
 
-// Each corner is measured to half a pixel, and each tag as a whole is off by 2 px in an image.
+// Each corner has noise of half a pixel, and each tag is off by 2 px as a whole in each image.
 TEST(ObservationFit, WhatTheCornersOfATagShareIsTold) {
   const InstrumentedBiped biped(kOnFeet, InstrumentedBiped::kImages, {"*.compliance_*"});
   const ObservedRobot& model = biped.model;
@@ -150,14 +151,14 @@ TEST(ObservationFit, WhatTheCornersOfATagShareIsTold) {
     const Source& source = model.setup.sources[s];
     if (source.unit != SourceUnit::kPixel) continue;
     const bool shared = source.name.ends_with(".shared");
-    // Of the mean, twice the shift.
+    // The source is that of the mean, which is twice the shift.
     EXPECT_NEAR(fit.spread.sd[s], shared ? 4.0 : 0.5, shared ? 0.8 : 0.1) << source.name;
   }
 }
 
 TEST(ObservationFit, TheMountingOfAnInertialUnitIsFoundWithItsUncertainty) {
-  // An offset of the joint that carries the unit turns it like its mounting does: angles are known
-  // here.
+  // An offset of the joint that carries the unit acts like a turned mounting, so that angles are
+  // known here.
   const InstrumentedBiped biped(kOnFeet, InstrumentedBiped::kInertial | InstrumentedBiped::kTips,
                                 {"*.compliance_*", "*.theta", "*.alpha", "*.beta", "*.gamma"});
   const ObservedRobot& model = biped.model;
@@ -172,7 +173,7 @@ TEST(ObservationFit, TheMountingOfAnInertialUnitIsFoundWithItsUncertainty) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Random random(40 + seed);
     ObservedValues truth = RandomTruth(model, 0, random);
-    truth.quantities[hand].x.head<3>() << 0.4, -0.3, 1.2;  // far from what the project says
+    truth.quantities[hand].x.head<3>() << 0.4, -0.3, 1.2;  // far from the project's values
     Observations seen = biped.Observe(truth, 0, 150, random);
     AddNoise(model, seen, random);
     const ObservationFit fit = EstimateObserved(model, seen, {}).fit;
@@ -180,13 +181,13 @@ TEST(ObservationFit, TheMountingOfAnInertialUnitIsFoundWithItsUncertainty) {
     for (int unit : {hand, find("imu.mounting")}) {
       const Eigen::Vector3d error = RotationVector(
           truth.quantities[unit].Rotation(0) * fit.values.quantities[unit].Rotation(0).transpose());
-      // 0.02 m/s^2 are 0.12 degrees, each of 150 postures tells two of three angles, and the bias
-      // is told beside them: 0.012 degrees for each angle, up to twice that.
+      // 0.02 m/s^2 are 0.12 degrees. Each of 150 postures tells two of three angles, and the bias
+      // is estimated as well: 0.012 degrees for each angle, or up to twice that.
       if (unit == hand) {
         EXPECT_LT(error.norm(), 0.05 * kDegreeOfArc);
       }
       const int entry = fit.entry_of_quantity[unit];
-      // The chart's rotation vector turns the axes by its left Jacobian.
+      // The left Jacobian of the chart's rotation vector gives the turn of the axes.
       const Eigen::Matrix3d turns = fit.values.quantities[unit].Turns(0);
       const Eigen::Matrix3d covariance =
           turns * fit.covariance.block<3, 3>(entry, entry) * turns.transpose();
@@ -194,7 +195,7 @@ TEST(ObservationFit, TheMountingOfAnInertialUnitIsFoundWithItsUncertainty) {
       count += 3;
     }
   }
-  // Chi-squared of 36 numbers: 36 +- 8.5; three times that.
+  // Chi-squared of 36 numbers is 36 +- 8.5. The bounds are three times that.
   EXPECT_GT(squares, 11.0);
   EXPECT_LT(squares, 61.0) << "of " << count;
 }
@@ -216,14 +217,14 @@ TEST(ObservationFit, ThePoseOfACameraLiesInItsInterval) {
     const Eigen::VectorXd error = fit.values.quantities[camera].x - truth.quantities[camera].x;
     squares += error.dot(fit.covariance.block(entry, entry, 6, 6).llt().solve(error));
   }
-  // Chi-squared of 36 numbers: 36 +- 8.5; three times that. (The camera's pose begins at nominal,
-  // so that both charts are the same.)
+  // Chi-squared of 36 numbers is 36 +- 8.5. The bounds are three times that. (The camera's pose
+  // begins at nominal, so that both charts are the same.)
   EXPECT_GT(squares, 11.0);
   EXPECT_LT(squares, 61.0);
 }
 
-// Few images: where each tag stands, and with it the rows that its corners share, is explained one
-// by one. That is no sign of images without noise.
+// With few images, the unknown pose of each tag explains the rows that its corners share. This does
+// not mean that images have no noise.
 TEST(ObservationFit, NoiseIsNotTakenForNoneWhereUnknownsExplainItsRows) {
   const InstrumentedBiped biped(kOnFeet, InstrumentedBiped::kImages, {"*.compliance_*"});
   const std::vector<Source>& sources = biped.model.setup.sources;
@@ -249,7 +250,7 @@ TEST(ObservationFit, FindsTheComplianceOfTheHips) {
   const ObservedEstimate estimate = EstimateObserved(model, seen, {});
   const int hip = FindParameter(model.robot.parameters, "left_3.compliance_z");
   // Loads depend on the lengths of the legs, which touches do not determine: 1 mm in 0.5 m. One
-  // number of noise at its first guess, 3 mm, stands beside 300 without any.
+  // number has noise, 3 mm as first guessed, and 300 have none.
   EXPECT_NEAR(estimate.fit.values.robot[hip] / truth.robot[hip], 1.0, 1e-2);
 }
 
@@ -274,15 +275,15 @@ TEST(ObservationFit, IntervalsCoverTheTruth) {
       if (std::abs(fit.values.robot[i] - truth.robot[i]) <= factor * sd) ++inside;
     }
   }
-  // 192 offsets, of which those of a robot are correlated: as about 70, so two standard errors
-  // are 5 %.
+  // 192 offsets, which are correlated within each robot. They count as about 70, so that two
+  // standard errors are 5 %.
   EXPECT_GT(inside, 0.90 * all) << inside << " of " << all;
   EXPECT_LT(inside, 0.995 * all) << inside << " of " << all;
 }
 
 TEST(ObservationFit, IntervalsHoldWhereOffsetsAreTwiceAsLargeAsExpected) {
-  // Few touches tell so little of the legs that their prior stays too narrow: it is one of few
-  // numbers that its width is estimated from, and the intervals must know it.
+  // Few touches tell little about the legs, so that their prior stays too narrow. Few numbers
+  // determine its width, and the intervals must take this into account.
   const ObservedRobot model = MakeTouchingBiped({"*.compliance_*"});
   int inside = 0, all = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
@@ -317,7 +318,7 @@ TEST(ObservationFit, NamesATouchWithoutContact) {
   const ObservedEstimate clean = EstimateObserved(model, touches, {});
   EXPECT_TRUE(clean.outliers.empty());
   const int elbow = FindJoint(model.robot.tree, "arm_right_3");
-  touches.q(17, model.robot.tree.joints[elbow].coordinate) -= 0.4;  // the hand is in the air
+  touches.q(17, model.robot.tree.joints[elbow].coordinate) -= 0.4;  // lifts the hand into the air
   const ObservedEstimate estimate = EstimateObserved(model, touches, {});
   ASSERT_EQ(estimate.outliers.size(), 1u);
   EXPECT_EQ(estimate.outliers[0].observation, 17);

@@ -20,7 +20,7 @@ namespace {
 
 Project TouchProject() { return ReadProject(SourceFile("examples/talos_touch/project.yaml")); }
 
-/// A rigid robot of which the zeros of joints alone are wrong, and perfect instruments.
+/// Options for a rigid robot with errors only in the zeros of its joints, and perfect instruments.
 VirtualExperimentOptions OffsetsAlone() {
   VirtualExperimentOptions options;
   SwitchOffImperfections(options);
@@ -30,7 +30,7 @@ VirtualExperimentOptions OffsetsAlone() {
   return options;
 }
 
-/// What the estimator's model with the true values leaves of what MuJoCo's robot shows.
+/// Residuals of the estimator's model with the true values, for measurements of MuJoCo's robot.
 struct Comparison {
   ObservedRecording recording;
   ObservedRobot model;
@@ -82,7 +82,7 @@ TEST(SimulateObservations, MuJoCoShowsInstrumentsWhatTheModelWithTheTruthPredict
   for (std::size_t i = 0; i < of.left.size(); ++i) {
     const Instrument& instrument = of.model.instrument(of.all.all[i].instrument);
     const bool image = instrument.measured_size() == 8;
-    // px or m/s^2; offsets of a degree are 10 px and 0.2 m/s^2.
+    // Units are px or m/s^2. Offsets of a degree would be 10 px and 0.2 m/s^2.
     EXPECT_LT(of.left[i].cwiseAbs().maxCoeff(), image ? 0.3 : 3e-3) << instrument.name;
     views += image ? 1 : 0;
   }
@@ -97,13 +97,14 @@ TEST(SimulateObservations, MuJoCosContactLaysPlatesFlushOnTheTrueTables) {
   const Comparison of = Compare(project, {drawn.postures[0], drawn.postures[1]}, options);
   EXPECT_EQ(of.recording.postures.size(), 4u);
   for (const Eigen::VectorXd& left : of.left) {
-    // Contact and arms give way by millimetres; offsets of a degree are 10 mm and 20 mrad.
+    // Contacts and arms give way by millimetres. Offsets of a degree would be 10 mm and 20 mrad.
     EXPECT_NEAR(left[0], 0.0, 4e-3);
     EXPECT_LT(left.tail<2>().cwiseAbs().maxCoeff(), 6e-3);
   }
 }
 
-/// The plate's face in every sample, on the floor by the foot that the planner does not use for it.
+/// The plate's face in each sample, relative to the floor under the foot that the planner does not
+/// use.
 std::vector<Transform> FacesOf(const Project& project, int plate, const Eigen::MatrixXd& q) {
   const ObservationSetup setup = ObservedPostureSampler(project, 0).setup();
   const PhysicalPlate face = DescribedPlate(setup.plates[Size(plate)]);
@@ -149,7 +150,7 @@ TEST(PlanTouches, PlatesComeStraightDownOntoTheirTablesAndAreNeverInThem) {
   }
 }
 
-// With the first foot in the air, the second one says where the robot is.
+// When the first foot is in the air, the second one places the robot.
 TEST(PlanTouches, TheRootIsPlacedByTheFootThatStands) {
   const Project project = TouchProject();
   const ObservedPostureSampler stance(project, 0);
@@ -181,7 +182,7 @@ TEST(PlanTouches, ATableInTheWayAndAHandThatDoesNotReachAreNamed) {
       << inside.left_out[0];
 }
 
-// Its tilt is a quantity that the project does not name.
+// The tilt of the root link is a quantity that the project does not name.
 TEST(DesignObservations, ARootLinkThatIsHeldNeedsNoFeet) {
   ScratchFolder folder;
   std::ofstream(folder.path() / "project.yaml")
@@ -200,7 +201,7 @@ TEST(DesignObservations, ARootLinkThatIsHeldNeedsNoFeet) {
 
 class DesignForArm : public ArmWithTracker {};
 
-// What the design says of a change is what a check of those postures makes of it.
+// The design's prediction of a change is what a check with these postures finds.
 TEST_F(DesignForArm, SaysHowWellACheckWillTellAChange) {
   const std::filesystem::path calibration = WriteCalibration();
   const ObservationDesign design = DesignObservations(project_, {.count = 6,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calibration through the library, as the header elastocal.hpp offers it.
+// Calibration with the library, through the header elastocal.hpp.
 
 #include <fstream>
 #include <set>
@@ -25,7 +25,7 @@ class Pipeline : public testing::Test {
     WritePostureTable(table_, recorded_, project_.tree);
   }
 
-  /// Calibrates into a folder as the program does.
+  /// Writes a calibration into a folder like the program.
   std::string Publish(const std::filesystem::path& folder, CalibrationRun& run) const {
     const std::vector<std::filesystem::path> inputs = InputFiles(project_, {table_});
     OutputSet outputs;
@@ -64,13 +64,13 @@ TEST_F(Pipeline, CalibratesAndTellsOfItsSteps) {
   EXPECT_EQ(RunStatus(run), "converged");
   EXPECT_EQ(run.recording.posture_count(), 30);
   EXPECT_EQ(run.cross_validation.folds, 3);
-  // Noise of 0.2 mm a coordinate is 0.35 mm in 3-D; the fit takes a part of it away.
+  // Noise of 0.2 mm a coordinate is 0.35 mm in 3-D, of which the fit removes a part.
   EXPECT_LT(run.comparison.largest_metrics().rmse_3d, 0.35e-3);
   ASSERT_TRUE(run.urdf.has_value());
   EXPECT_NE(run.urdf->text.find("<robot"), std::string::npos);
 }
 
-// A folder holds the files of one run: those of a good run go when a bad one follows.
+// A folder has the files of one run. Those of a good run are removed when a bad run follows.
 TEST_F(Pipeline, ARunThatIsNotDeployableTakesTheEarlierFilesAway) {
   const std::filesystem::path folder = scratch_.path() / "out";
   CalibrationRun run = CalibrateExperiment(project_, {table_}, {.folds = 3});
@@ -82,7 +82,7 @@ TEST_F(Pipeline, ARunThatIsNotDeployableTakesTheEarlierFilesAway) {
   EXPECT_EQ(Names(folder), expected);
   EXPECT_EQ(CompareCalibrations(folder, folder).comparison.changed, false);
 
-  project_.calibration.plausible_marker_sd = 1e-6;  // nothing real is as good
+  project_.calibration.plausible_marker_sd = 1e-6;  // no real calibration is as good
   run = CalibrateExperiment(project_, {table_}, {.folds = 3});
   EXPECT_FALSE(run.deployable());
   EXPECT_FALSE(run.urdf.has_value());
@@ -110,7 +110,7 @@ TEST_F(Pipeline, ACalibrationIsValidatedOnAnotherRecording) {
       {"sign:arm_2_joint", "nothing in the recording points to it"});
 }
 
-// A shoulder that is off by 5 mrad moves a hand at 0.5 m by 2.5 mm; the noise is 0.35 mm.
+// A shoulder with an offset of 5 mrad moves a hand at 0.5 m by 2.5 mm. The noise is 0.35 mm.
 TEST_F(Pipeline, AValidationSaysWhetherTheErrorsAreThosePredicted) {
   const std::filesystem::path folder = scratch_.path() / "out";
   CalibrationRun run = CalibrateExperiment(project_, {table_}, {.folds = 3});
@@ -134,8 +134,8 @@ TEST_F(Pipeline, AValidationSaysWhetherTheErrorsAreThosePredicted) {
   EXPECT_NE(moved.warnings.back().find("its calibration predicted"), std::string::npos);
 }
 
-// A file whose URDF has the geometry of the full model says no other errors for it; the URDF has no
-// springs all the same.
+// If the URDF has the geometry of the full model, the file has no separate errors for it. The URDF
+// still has no springs.
 TEST_F(Pipeline, TheUrdfIsValidatedWithoutSprings) {
   project_.elasticity.torsion = {"*"};
   const ErrorModel model = MakeProjectModel(project_, {});

@@ -8,12 +8,12 @@
 
 namespace elastocal {
 
-/// The first sentence; empty without any.
+/// The first sentence, or an empty one.
 inline std::string First(const std::vector<std::string>& found) {
   return found.empty() ? "" : found.front();
 }
 
-/// One mistake, whose sentence begins so and has this in it.
+/// Expects one mistake, whose sentence begins with `begin` and contains `accept`.
 inline void ExpectNamed(const std::vector<std::string>& found, const std::string& begin,
                         const std::string& accept) {
   ASSERT_EQ(found.size(), 1u) << First(found);

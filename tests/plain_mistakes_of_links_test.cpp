@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mistakes in the log of a robot whose joints motors move by rods.
+// Mistakes in the log of a robot with joints that motors move by rods.
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST_F(PlainMistakesOfLinks, MotorsOfRods) {
   int tried = 0;
   for (const LogSuspicion& mistake : possible) {
     if (mistake.linkage < 0 || tried == 3) continue;
-    // Rods that would not close with the mistake are refused when the table is read.
+    // The table is refused when it is read if the mistake leaves rods that cannot close.
     Recording wrong;
     try {
       wrong = WithoutMistake(recorded_, mistake, project_.tree);
@@ -51,7 +51,7 @@ TEST_F(PlainMistakesOfLinks, MotorsOfRods) {
   EXPECT_GE(tried, 2);
 }
 
-// In trials, the markers show each joint, and so each motor.
+// In trials, the markers show each joint and so each motor.
 TEST_F(PlainMistakesOfLinks, MotorsOfRodsInTrials) {
   recorded_.trials = {{.name = "a", .chains = {}}};
   recorded_.trial.assign(Size(recorded_.posture_count()), 0);

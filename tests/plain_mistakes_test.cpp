@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mistakes in tables of markers, and in projects, that show before anything is estimated.
+// Mistakes in tables of markers, and in projects, that show before any estimate.
 #include "elastocal/mistakes/plain_mistakes.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 namespace elastocal {
 namespace {
 
-/// An arm whose joints are off by a degree or so.
+/// An arm with errors of about a degree in its joints.
 class PlainMistakes : public testing::Test {
  protected:
   PlainMistakes() { Record(0.02); }
@@ -36,7 +36,7 @@ class PlainMistakes : public testing::Test {
         {.postures = postures});
   }
 
-  /// The root link stands elsewhere in each posture from this one on.
+  /// From this posture on, moves the root link to another place in each posture.
   void MoveRoot(int first) {
     Random random(2);
     for (int i = first; i < recorded_.posture_count(); ++i) {
@@ -62,8 +62,8 @@ TEST_F(PlainMistakes, NoneOfACleanTableWhateverItsOffsets) {
   }
 }
 
-// Of a small arm with half of its postures wrong, no part of the table places it as it is; here the
-// markers tell each of them.
+// If half of the postures of a small arm are wrong, no part of the table places it. Here the
+// markers reveal each wrong posture.
 TEST_F(PlainMistakes, PositionsModuloHalfATurn) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
   const auto flange = std::find_if(project_.tree.joints.begin(), project_.tree.joints.end(),
@@ -99,8 +99,8 @@ TEST_F(PlainMistakes, SignsAndExchangesOfAnyJoints) {
   ExpectNamed(Find(wrong), "", ": their positions are exchanged");
 }
 
-// Half a turn of a joint explains the sign of the next one as well, and the nominal robot hardly
-// shows a joint that rests while other limbs are measured: the places of the markers tell them
+// Half a turn of a joint may be explained by the sign of the next one. And the nominal robot hardly
+// shows a joint that rests while other limbs are measured. The places of the markers tell these
 // apart.
 TEST_F(PlainMistakes, AnotherZeroOfAnyJoint) {
   const auto& tree = project_.tree;
@@ -173,8 +173,7 @@ TEST_F(PlainMistakes, TwoAreNamedBesideEachOther) {
   EXPECT_EQ(measured.calibration.q, recorded_.q);
 }
 
-// Rows without a partner are left out: what is tried next is of the shorter table.
-// Where a half of the table is sound, that half places the robot.
+// A sound half of the table places the robot.
 TEST_F(PlainMistakes, InAPartOfTheTable) {
   const auto& tree = project_.tree;
   const auto name = [&](int c) { return tree.joints[Size(tree.coordinate_joint[Size(c)])].name; };
@@ -200,6 +199,7 @@ TEST_F(PlainMistakes, InAPartOfTheTable) {
   ExpectNamed(Find(wrong), "the markers are those of the row before", "in postures 3, 10, 18, 26");
 }
 
+// Rows without a partner are left out, so that the next mistakes are tried on a shorter table.
 TEST_F(PlainMistakes, OneColumnThatIsNotItsOwnAndAFrameOfTheOtherHand) {
   const auto& tree = project_.tree;
   Recording wrong = recorded_;
@@ -219,7 +219,8 @@ TEST_F(PlainMistakes, OneColumnThatIsNotItsOwnAndAFrameOfTheOtherHand) {
   ExpectNamed(Find(wrong), "the markers are in a left-handed frame", "");
 }
 
-// Neither of two signs need show by itself; columns that went round are two exchanges.
+// Each of the two may show only with the other. Three columns that are exchanged in a cycle are two
+// exchanges.
 TEST_F(PlainMistakes, TwoThatShowOnlyTogether) {
   Recording wrong = recorded_;
   wrong.q.col(1) = recorded_.q.col(2);
@@ -248,7 +249,7 @@ TEST_F(PlainMistakes, RowsThatAreShifted) {
   }
 }
 
-// Offsets of two joints may look like anything; what is left then is no explanation.
+// Offsets of two joints may explain anything. Centimetres that remain are no explanation.
 TEST_F(PlainMistakes, NothingIsNamedThatLeavesCentimetres) {
   Measurements measured;
   measured.calibration = recorded_;
@@ -271,15 +272,15 @@ TEST_F(PlainMistakes, NothingIsEstimatedOrChosenBesideThem) {
   WritePostureTable(scratch.path() / "table.csv", wrong, project_.tree);
   const CalibrationRun run = CalibrateExperiment(project_, {scratch.path() / "table.csv"});
   ASSERT_EQ(run.faults.size(), 1u);
-  // What the mistake does to the fit is not said beside it.
+  // The effect of the mistake on the fit is not reported as well.
   EXPECT_EQ(run.verdict.objections, run.faults);
   EXPECT_EQ(run.cross_validation.folds, 0);
   EXPECT_TRUE(run.elasticity.empty());
   EXPECT_FALSE(run.urdf.has_value());
 }
 
-// The last joint's zero and the places of the markers behind it do the same: no residual tells
-// them apart, but the places in the project do.
+// The zero of the last joint and the places of its markers have the same effect. Residuals do not
+// tell them apart, but the places in the project do.
 TEST_F(PlainMistakes, AnotherZeroOfTheLastJointIsToldByThePlacesOfItsMarkers) {
   const auto warned = [&](double zero) {
     Recording recorded = recorded_;
@@ -300,7 +301,7 @@ TEST_F(PlainMistakes, AnotherZeroOfTheLastJointIsToldByThePlacesOfItsMarkers) {
     const std::string warning = warned(zero);
     EXPECT_EQ(warning.find("cluster TOOL: its markers are "), 0u) << zero << warning;
   }
-  EXPECT_EQ(warned(0.1), "");  // 6 degrees: a ruler may err by as much
+  EXPECT_EQ(warned(0.1), "");  // 6 degrees: a ruler may err by this
 }
 
 TEST_F(PlainMistakes, FollowersThatFollowTheOtherWay) {
@@ -322,8 +323,7 @@ TEST_F(PlainMistakes, ARootThatMoved) {
               "{root: free}");
 }
 
-// Not all postures of a long table are fitted, but some of all its parts.
-// The tripod is turned by 4 mrad: the markers on the pedestal hardly move, the hand by millimetres.
+// The tripod turns by 4 mrad: markers on the pedestal hardly move, the hand moves by millimetres.
 TEST_F(PlainMistakes, AFrameOfTheMarkersThatMovedIsToldByTheRootsMarkers) {
   Recording pushed = recorded_;
   const Eigen::Matrix3d R = RotationFromVector({0.0, 0.0, 4e-3});
@@ -352,6 +352,7 @@ TEST_F(PlainMistakes, AMarkerOfTheRootThatSlippedIsNoMovedFrame) {
   EXPECT_FALSE(FindMovedFrame(model, recorded_));
 }
 
+// Only some postures of a long table are fitted, from all its parts.
 TEST_F(PlainMistakes, ARootThatMovedAtTheEndOfALongTable) {
   Record(0.02, 700);
   MoveRoot(500);

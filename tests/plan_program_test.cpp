@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command `plan`, from posture file to a motion that `simulate` could play.
+// The command `plan`, from a posture file to a motion that `simulate` can play.
 
 #include <sstream>
 
@@ -35,7 +35,7 @@ class Plan : public testing::Test {
                       Path("motion.csv") + " " + more);
   }
 
-  /// The TALOS project without the design of legs.
+  /// The TALOS project without the design of its legs.
   std::string WithoutLegs() {
     std::string text = ReadFile(SourceFile("models/talos/project.yaml"));
     const auto begin = text.find("    - chain: leg_left"), end = text.find("    - chain: arm_left");
@@ -84,8 +84,8 @@ TEST_F(Plan, SaysWhichConstraintMakesItImpossible) {
 }
 
 TEST_F(Plan, WritesNoMotionThatBreaksItsLimitsAndSaysWhich) {
-  // Every sine is left out, and the robot at rest needs 19 % of the torque of a wrist. Legs aside,
-  // because they could not even be lifted.
+  // All sines are left out, and a wrist of the robot at rest needs 19 % of its torque. Legs are not
+  // in the project, because they could not even be lifted.
   const ProgramResult refused = RunProgram("plan " + WithoutLegs() + " -o " + Path("motion.csv") +
                                            " --kind sine --torque-share 0.1");
   EXPECT_EQ(refused.exit_code, 4) << refused.out;
@@ -117,7 +117,7 @@ TEST_F(Plan, RefusesSharesAboveOneAndOutputsThatMeet) {
   EXPECT_EQ(ReadFile(postures), kPostures);
 }
 
-// simulate writes the joint log of the trial `leg_left` to leg_left.csv.
+// For the trial `leg_left`, `simulate` writes the joint log leg_left.csv.
 TEST_F(Plan, MotionsOfChainsAreNotNamedLikeJointLogs) {
   const std::string postures = scratch_.Write("postures.yaml", kPostures);
   std::filesystem::create_directory(Path("chains"));
@@ -146,8 +146,8 @@ TEST_F(Plan, RefusesBadInput) {
 }
 
 TEST_F(Plan, StandsOnOneFootAndFallsWithoutBalance) {
-  // One posture of a leg on a robot with errors and flexible legs whose feet lie on the floor. The
-  // whole programme is in docs/accuracy.md.
+  // One posture of a leg, on a robot with errors and flexible legs whose feet lie on the floor.
+  // docs/accuracy.md has the whole motion.
   const std::string postures = scratch_.Write(
       "leg.yaml",
       "robot: talos\nchains: [{name: leg_left, support: [right_sole_link], postures: "
@@ -158,7 +158,7 @@ TEST_F(Plan, StandsOnOneFootAndFallsWithoutBalance) {
     const nlohmann::json json = nlohmann::json::parse(ReadFile(Path("plan.json")));
     const bool stood = json["tries"][0]["stood"].get<bool>();
     EXPECT_EQ(result.exit_code, stood ? 0 : 4) << result.err;
-    // A sole that touches the floor is on its edge for a moment, which tips nothing over.
+    // When a sole touches the floor, it is on its edge for a moment without tipping the robot over.
     EXPECT_EQ(json["tries"][0]["least_zmp_margin"].get<double>() > 0.01, stood);
     return stood;
   };

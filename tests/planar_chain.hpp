@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chains in the plane that a test can solve by hand, as robots at run time.
+// Robots at run time whose planar chains a test can solve by hand.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ inline ec_pose Shift(double x, double y) {
   return pose;
 }
 
-/// A rigid chain in the plane without weight; joint k turns about z, at `at[k]` in the body before.
+/// A rigid planar chain without weight. Joint k turns about z at `at[k]` in the body before it.
 struct PlanarChain {
   std::vector<ec_pose> nominal_at, calibrated_at;
   std::vector<double> lower, upper;
@@ -40,8 +40,8 @@ struct PlanarChain {
       ec_identity(&joint.body);
       if (k == 0 && lift) {
         joint.prismatic = 1;
-        const double R[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0};     // z along y
-        const double back[9] = {1, 0, 0, 0, 0, -1, 0, 1, 0};  // and back
+        const double R[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0};     // z along the world's y
+        const double back[9] = {1, 0, 0, 0, 0, -1, 0, 1, 0};  // the inverse turn
         std::copy(R, R + 9, joint.twisted.R);
         std::copy(back, back + 9, joint.body.R);
       }
@@ -68,7 +68,7 @@ struct PlanarChain {
   }
 };
 
-/// Hip, knee and ankle. The real shank is longer than the nominal one.
+/// Hip, knee and ankle. The real shank is longer than the nominal one by `longer`.
 inline PlanarChain PlanarLeg(double longer, double knee_lower, double knee_upper) {
   PlanarChain leg;
   leg.nominal_at = {Shift(0, 0), Shift(kThigh, 0), Shift(kShank, 0)};

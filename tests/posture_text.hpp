@@ -8,7 +8,7 @@
 
 namespace elastocal {
 
-/// A table of `rows` different postures of all joints but those left out.
+/// A table of `rows` different postures of all joints except those that are left out.
 inline std::string TableText(const Project& project, int rows, const std::string& without = "",
                              const std::string& extra = "") {
   std::string text;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a model says of a recording: where the waist is with respect to its foot, and where markers
-// are in a folder that the estimator's own model made.
+// Predictions of a model: the pose of the waist relative to its foot, and the markers in a folder
+// that the estimator's own model made.
 
 #include "elastocal/calibration/prediction.hpp"
 
@@ -15,7 +15,7 @@
 namespace elastocal {
 namespace {
 
-/// Largest distance between the waists of postures on one foot.
+/// Largest distance between two estimates of the waist, over postures on one foot.
 double LargestDistance(const Placement& a, const Placement& b) {
   double largest = 0.0;
   for (std::size_t i = 0; i < a.footing.size(); ++i) {
@@ -42,11 +42,11 @@ TEST(Prediction, FootMarkersAlonePlaceTheWaistWhateverTheOthersSay) {
     return Predict(robot.model, truth, recording, {}, nullptr, by).placement;
   };
   const Placement expected = waists(clean, FootingBy::kFootMarkers);
-  // The shift tilts the first guess of the waist, by which gravity acts, by a few mrad: what
-  // statics bends (joints without torque sensors) follows by micrometres.
+  // The shift tilts the first guess of the waist, and with it gravity, by a few mrad. The bending
+  // by statics (of joints without torque sensors) then changes by micrometres.
   EXPECT_LT(LargestDistance(waists(off, FootingBy::kFootMarkers), expected), 2e-5);
   EXPECT_GT(LargestDistance(waists(off, FootingBy::kAllMarkers), expected), 1e-3);
-  // Both fit what has no noise; the nominal guess of gravity's direction leaves a micrometre.
+  // Both fit data without noise. The nominal guess of the direction of gravity leaves a micrometre.
   EXPECT_LT(LargestDistance(waists(clean, FootingBy::kAllMarkers), expected), 3e-6);
 }
 
@@ -64,8 +64,8 @@ VirtualExperimentOptions PerfectSensors() {
   return options;
 }
 
-// From the motion through files, filter, clock and samples to the prediction: TSV files are written
-// to a micrometre, and a leg's compliance turns the rounding of torques into less.
+// The data go from the motion through files, filter, clock and samples to the prediction. TSV files
+// round to a micrometre. Rounding of torques changes less than that through a leg's compliance.
 TEST(Prediction, OfAPerfectMatchedFolderByItsTruthIsExact) {
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   VirtualExperiment plan = PrepareExperiment(DescribeRobot(project), PerfectSensors());

@@ -29,15 +29,15 @@ class Program : public ::testing::Test {
     out_ = (scratch_.path() / "out").string();
   }
 
-  /// With `more` options, or else with fewer folds than usual: most tests are not about folds,
-  /// which take most of the time.
+  /// Calibrates with `more` options, by default with fewer folds than usual. Folds take most of the
+  /// time, and most tests are not about them.
   ProgramResult Calibrate(const std::string& project, const std::string& recording,
                           const std::string& more = kFewFolds) {
     return RunProgram("calibrate " + project + " --recording " + recording + " -o " + out_ + " " +
                       more);
   }
 
-  /// The recording with the cell of a row (0: header) and column replaced.
+  /// The recording with one cell replaced, in this row (0: header) and column.
   std::string WithCell(int row, int column, const std::string& text) {
     std::ifstream stream(recording_);
     std::string line, changed;
@@ -52,7 +52,8 @@ class Program : public ::testing::Test {
     return scratch_.Write("changed.csv", changed);
   }
 
-  /// Bad input: exit code 3, all parts in the message, and no output at all.
+  /// Expects that bad input is refused: exit code 3, all parts in the message, and no output at
+  /// all.
   void ExpectRefused(const ProgramResult& result, std::initializer_list<std::string> parts) {
     EXPECT_EQ(result.exit_code, 3) << result.out << result.err;
     for (const std::string& part : parts) {
@@ -61,7 +62,7 @@ class Program : public ::testing::Test {
     EXPECT_FALSE(std::filesystem::exists(out_));
   }
 
-  /// Another recording of the arm, its parameter changed, calibrated into `folder`.
+  /// Calibrates into `folder` from another recording of the arm, with one parameter changed.
   std::string CalibratedLater(const std::string& folder, const std::string& parameter,
                               double change) {
     Eigen::VectorXd later = truth_;
@@ -85,7 +86,7 @@ class Program : public ::testing::Test {
   ScratchFolder scratch_;
   const Project arm_ = ReadProject(SourceFile(kProject));
   const ErrorModel model_ = MakeErrorModel(arm_.tree, arm_.markers, arm_.placement);
-  Eigen::VectorXd truth_;  ///< of the recording
+  Eigen::VectorXd truth_;  ///< truth of the recording
   std::string project_, recording_, out_;
 };
 

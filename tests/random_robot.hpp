@@ -10,7 +10,7 @@
 
 namespace elastocal {
 
-/// How the axis of a joint lies to that of the joint before it.
+/// Relation of a joint's axis to the axis of the joint before it.
 enum class AxisRelation {
   kAny,
   kIntersecting,
@@ -27,7 +27,7 @@ inline Transform RandomTransform(Random& random) {
   return T;
 }
 
-/// Adds a joint in the given relation to the one that moves its parent link. Returns its link.
+/// Adds a joint in this relation to the joint that moves its parent link. Returns its link.
 inline int AddRelatedJoint(RobotTree& tree, const std::string& name, int parent_link,
                            AxisRelation relation, JointType type, Random& random) {
   const Joint& before = tree.joints.at(tree.links[parent_link].body - 1);
@@ -60,8 +60,8 @@ inline int AddRelatedJoint(RobotTree& tree, const std::string& name, int parent_
   return AddJoint(tree, name, parent_link, T, T.linear().transpose() * axis, type);
 }
 
-/// A robot of three to nine joints `j0`, `j1`..., one in five of which slides, with some branches
-/// and links on fixed joints, and neighbouring axes in the given relations.
+/// A robot of three to nine joints `j0`, `j1`..., of which one in five slides. It has some branches
+/// and fixed links, and neighbouring axes have the given relations.
 inline RobotTree RandomRobot(const std::vector<AxisRelation>& relations, Random& random) {
   RobotTree tree = MakeRoot();
   const int joint_count = 3 + random.Index(7);
@@ -84,7 +84,7 @@ inline RobotTree RandomRobot(const std::vector<AxisRelation>& relations, Random&
   return tree;
 }
 
-/// The relations of axes that real robots have.
+/// The relations of axes in real robots.
 inline const std::vector<AxisRelation> kUsualRelations = {
     AxisRelation::kAny, AxisRelation::kIntersecting, AxisRelation::kParallel,
     AxisRelation::kAntiparallel, AxisRelation::kNearlyParallel};

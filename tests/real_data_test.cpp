@@ -38,7 +38,7 @@ class LeftArm : public ::testing::Test {
     Recording recording;
   };
 
-  /// The recorded postures with a drawn robot's markers and 0.2 mm of noise.
+  /// The recorded postures with the markers of a random robot and noise of 0.2 mm.
   Truth Generate(double factor, int seed) const {
     const Prior& prior = project_.calibration.prior;
     std::map<ParameterKind, double> sd;
@@ -81,8 +81,8 @@ TEST_F(LeftArm, ErrorsAreAsSmallAsPromised) {
   EXPECT_LE(folds.metrics[2].rmse_3d, 0.80e-3);
 }
 
-// The shoulder's offset is the largest of the arm in the paper's Table 1 as well: 1.73 degrees,
-// found on the same robot with other markers and another recording.
+// In the paper's Table 1, the shoulder's offset is also the largest of the arm: 1.73 degrees, found
+// on the same robot with other markers and another recording.
 TEST_F(LeftArm, ShoulderOffsetAgreesWithThePaper) {
   const CalibrationResult result =
       Calibrate(model_, recording_, base_, ModelKind::kGeometric, project_.calibration);
@@ -108,8 +108,8 @@ TEST_F(LeftArm, ShiftedDuplicateIsNamedAndChangesNothing) {
     EXPECT_LT(std::abs(result.delta[i] - clean.delta[i]), 0.5 * clean.sd[i])
         << model_.parameters[i].name;
   }
-  // T0 counts from another registration: compare the waist itself. To first order gamma, alpha,
-  // theta turn it about z, x, y and b, d, r move it along z, x, y.
+  // T0 counts from another registration, so the waist itself is compared. To first order, gamma,
+  // alpha and theta turn it about z, x and y, and b, d and r move it along z, x and y.
   const Transform T = WaistPose(clean).inverse() * WaistPose(result);
   const Eigen::AngleAxisd turn(T.linear());
   const Eigen::Vector3d rotation = turn.angle() * turn.axis();
@@ -122,11 +122,11 @@ TEST_F(LeftArm, ShiftedDuplicateIsNamedAndChangesNothing) {
   EXPECT_LT((T.translation().array() / translation_sd.array()).abs().maxCoeff(), 0.5);
 }
 
-// Intervals on postures that excite the wrist badly (condition number 5e4), markers and truth
-// generated: truth from the prior, and from three times the prior, which has to be widened.
+// Intervals for postures that excite the wrist badly (condition number 5e4). Markers are generated,
+// with a truth drawn from the prior or from three times the prior, which must then be widened.
 TEST_F(LeftArm, IntervalsHoldOnBadlyExcitedPostures) {
   for (double factor : {1.0, 3.0}) {
-    int inside[2] = {0, 0}, all[2] = {0, 0};  // estimated, unsupported
+    int inside[2] = {0, 0}, all[2] = {0, 0};  // for estimated, for unsupported ones
     for (int seed = 0; seed < 100; ++seed) {
       const Truth truth = Generate(factor, seed);
       const CalibrationResult result =
@@ -143,7 +143,7 @@ TEST_F(LeftArm, IntervalsHoldOnBadlyExcitedPostures) {
                 100.0 * inside[0] / all[0], all[0], 100.0 * inside[1] / all[1], all[1]);
     EXPECT_GE(inside[0], 0.91 * all[0]);
     EXPECT_LE(inside[0], 0.98 * all[0]);
-    EXPECT_GE(inside[1], 0.80 * all[1]);  // known to be short where the prior is: docs/accuracy.md
+    EXPECT_GE(inside[1], 0.80 * all[1]);  // known to be too short at the prior: docs/accuracy.md
   }
 }
 

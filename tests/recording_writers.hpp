@@ -11,7 +11,7 @@ namespace elastocal {
 
 // Recordings in the formats of others, for tests: written byte by byte from their descriptions.
 
-/// Three cells in mm with three decimals, as WriteQtmTsv has them; empty for a gap.
+/// Three cells in mm with three decimals, as by WriteQtmTsv. They are empty for a gap.
 inline std::string TextCells(const MarkerTrajectories& markers, int frame, int marker, char by) {
   std::string cells;
   for (int axis = 0; axis < 3; ++axis) {
@@ -64,7 +64,7 @@ inline std::string TrcText(const MarkerTrajectories& markers) {
   return text;
 }
 
-/// Each marker with a column of quality in between.
+/// Writes a take in which each marker is followed by a column of its quality.
 inline std::string MotiveText(const MarkerTrajectories& markers) {
   const std::string rate = FormatNumber(markers.rate_hz);
   std::string text =

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings of two robots, or of one whose markers were glued on anew, given as one.
+// Recordings of two robots, or of one robot whose markers were glued on anew, given as one
+// recording.
 #include "elastocal/mistakes/recordings_apart.hpp"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ class RecordingsApart : public testing::Test {
     return recording;
   }
 
-  /// Of both together, the second robot having the errors `second`.
+  /// The message about two recordings together. The second robot has the errors `second`.
   std::string Said(const Eigen::VectorXd& second) const {
     return SaidOf(JoinTrials(Record(truth_, "monday", 0), Record(second, "friday", 1)));
   }
@@ -60,7 +61,7 @@ class RecordingsApart : public testing::Test {
     return apart ? apart->said : "";
   }
 
-  /// What calibrate says of it.
+  /// The faults that `calibrate` reports.
   std::string FaultsOf(const Recording& recording, const Recording& validation = {}) const {
     ModelComparison comparison;
     const CalibrationResult fit = FitOf(recording);
@@ -92,7 +93,7 @@ TEST_F(RecordingsApart, AnotherRobotIsNotTheSame) {
   EXPECT_NE(said.find(" mm, friday "), std::string::npos) << said;
 }
 
-// What no robot of the model explains is no other robot, however much it is.
+// Errors that no robot of the model has do not indicate another robot, however large they are.
 TEST_F(RecordingsApart, ErrorsThatAPostureSharesAreNoOtherRobot) {
   Recording recording = Record(truth_, "monday", 0);
   Random random(3);
@@ -120,7 +121,7 @@ TEST_F(RecordingsApart, AnEncoderOffCentreIsNoOtherRobot) {
   EXPECT_EQ(SaidOf(recording), "");
 }
 
-// Fifteen trials, and a joint that lags behind its motor, to either side.
+// In fifteen trials, a joint lags behind its motor to either side.
 TEST_F(RecordingsApart, HysteresisInManyTrialsIsNoOtherRobot) {
   Recording all = JoinTrials(JoinTrials(Record(truth_, "a", 0), Record(truth_, "b", 1)),
                              Record(truth_, "c", 2));
@@ -163,7 +164,8 @@ TEST_F(RecordingsApart, TrialsOfAnotherRobotAreNamed) {
   EXPECT_NE(two.find("monday/leg_left, monday/leg_right ("), std::string::npos) << two;
 }
 
-// One of fifteen: the others are put together at once, but for the half that it is in.
+// One of fifteen trials is foreign. Without the half that contains it, the others are combined at
+// once.
 TEST_F(RecordingsApart, AForeignTrialIsFoundAmongMany) {
   const Recording foreign = Record(other_, "c", 2);
   Recording third = Record(truth_, "c", 2);
@@ -180,8 +182,8 @@ TEST_F(RecordingsApart, AForeignTrialIsFoundAmongMany) {
   EXPECT_NE(said.find("; another one c/leg_left ("), std::string::npos) << said;
 }
 
-// Before the trial of the other leg: it takes less than half of the squares, and robots of their
-// own explain each trial as well.
+// The joint is homed anew before the trial of the other leg. This causes less than half of the
+// squares, and a separate robot for each trial would explain as much.
 TEST_F(RecordingsApart, AJointThatWasHomedAnewIsFoundInAnyTrial) {
   Recording recording = Record(truth_, "monday", 0);
   const RobotTree& tree = robot_.project.tree;
@@ -196,7 +198,7 @@ TEST_F(RecordingsApart, AJointThatWasHomedAnewIsFoundInAnyTrial) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->coordinate, joint);
   EXPECT_EQ(recording.trials[Size(found->trial)].name, "monday/leg_right");
-  EXPECT_NEAR(found->size, 0.06, 0.01);  // the fit has spread a part of it
+  EXPECT_NEAR(found->size, 0.06, 0.01);  // the fit has spread a part of the error
   const std::string said = FaultsOf(recording);
   const std::string name = "--accept offset:leg_left_3_joint@monday/leg_right=";
   ASSERT_NE(said.find(name), std::string::npos) << said;
@@ -207,7 +209,7 @@ TEST_F(RecordingsApart, AJointThatWasHomedAnewIsFoundInAnyTrial) {
 class OffsetsOfLegs : public RecordingsApart {
  protected:
   Recording OfLegs(const std::string& folder, int session) const {
-    // Little noise: the attitude of a foot magnifies it by the length of the leg.
+    // The noise is small, because the length of the leg magnifies errors of a foot's attitude.
     const Recording all = Record(truth_, folder, session, 3e-5);
     std::vector<int> postures;
     for (int i = 0; i < all.posture_count(); ++i) {
@@ -241,7 +243,8 @@ class OffsetsOfLegs : public RecordingsApart {
   int joint_ = tree_.joints[FindJoint(tree_, "leg_left_3_joint")].coordinate;
 };
 
-// Two trials show the joint: off in the one, or by the opposite in the other. Held-out trials tell.
+// Two trials show the joint. It is off in one, or by the opposite in the other. Held-out trials
+// tell which.
 TEST_F(OffsetsOfLegs, AnOffsetIsInTheTrialThatContradictsHeldOutOnes) {
   Recording recording = OfLegs("monday", 0);
   const RecordingFault left = InTrial(recording, "monday/leg_left", -0.02);
@@ -255,7 +258,8 @@ TEST_F(OffsetsOfLegs, AnOffsetIsInTheTrialThatContradictsHeldOutOnes) {
   }
 }
 
-// Three of four trials are off: the fourth seems to be, and no single other one explains it.
+// The joint is off in three of four trials. So it seems off in the fourth, and no other single
+// trial explains this.
 TEST_F(OffsetsOfLegs, AnOffsetThatHeldOutTrialsRefuteIsSaidToBeDoubtful) {
   Recording recording = JoinTrials(OfLegs("monday", 0), OfLegs("friday", 1));
   for (const char* off : {"monday/leg_left", "monday/leg_right", "friday/leg_left"}) {
@@ -271,7 +275,7 @@ TEST_F(OffsetsOfLegs, AnOffsetThatHeldOutTrialsRefuteIsSaidToBeDoubtful) {
   EXPECT_NE(words.text.find(kOrInAllOthers), std::string::npos) << words.text;
 }
 
-// All of its clusters are elsewhere: none of them was knocked.
+// All clusters seem displaced, so that none of them was knocked.
 TEST_F(RecordingsApart, HeldOutTrialsOfAnotherRobotAreSaidToBe) {
   const Recording own = Record(truth_, "monday", 0);
   ModelComparison comparison;
@@ -295,7 +299,7 @@ TEST_F(RecordingsApart, HeldOutTrialsOfAnotherRobotAreSaidToBe) {
   EXPECT_NE(other.find("robots of their own"), std::string::npos) << other;
 }
 
-// By the trials of the estimate alone, it is a scale of all trials, and not exactly told.
+// From the trials of the estimate alone, it would be a scale of all trials, and less exactly known.
 TEST_F(RecordingsApart, AScaleOfTheEstimatesTrialsIsToldFromOneOfAll) {
   Recording own = Record(truth_, "monday", 0);
   own.markers *= 1.03;

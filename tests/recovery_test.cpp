@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recovery of a known truth by the whole estimator, on the embedded humanoid and on other robots.
+// The whole estimator recovers a known truth, for the embedded humanoid and other robots.
 
 #include <cmath>
 
@@ -18,7 +18,7 @@ namespace {
 
 using Kind = ParameterKind;
 
-/// A chain of a project with all its markers.
+/// A chain of a project, with all its markers.
 struct ChainModel {
   ErrorModel model;
   BaseParameters base;
@@ -37,7 +37,7 @@ ChainModel MakeChainModel(const std::string& project_file, const std::string& ch
   throw std::runtime_error("no chain " + chain_name);
 }
 
-/// Errors of the size that a robot has, and markers a centimetre from where they should be.
+/// Errors as large as those of a real robot, and markers that are off by a centimetre.
 std::map<Kind, double> RealisticErrors(double factor = 1.0) {
   const double angle = factor * 0.5 * M_PI / 180.0;
   const double length = factor * 1e-3;
@@ -72,12 +72,12 @@ TEST_P(Recovery, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
       Calibrate(chain_model.model, recording, chain_model.base, ModelKind::kGeometric, {});
   EXPECT_EQ(result.termination, Termination::kConverged);
   EXPECT_TRUE(result.outliers.empty());
-  // Perfect data (to the micrometre that the noise is taken for at least) tell some parameters
-  // exactly; of the others they tell combinations, and the standard deviation says so.
+  // Perfect data (with at least a micrometre of assumed noise) determine some parameters exactly.
+  // For the others they determine combinations, and the standard deviation says so.
   int told = 0;
   for (int i = 0; i < chain_model.model.parameter_count(); ++i) {
     const Parameter& parameter = chain_model.model.parameters[i];
-    if (parameter.kind == Kind::kWaistPose) continue;  // counts from another registration
+    if (parameter.kind == Kind::kWaistPose) continue;  // refers to another registration
     EXPECT_NEAR(result.delta[i], truth[i], 1e-8 + 5.0 * result.sd[i]) << parameter.name;
     if (result.sd[i] < 1e-6) {
       EXPECT_NEAR(result.delta[i], truth[i], 1e-6) << parameter.name;
@@ -87,9 +87,9 @@ TEST_P(Recovery, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
   EXPECT_GE(2 * told, static_cast<int>(chain_model.model.active_joints.size()));
 }
 
-// With errors on every parameter, dropped ones too, what is found is the combination that the
-// regrouping names - to first order, so the errors are small: 1e-3 of realistic ones, whose square
-// is 1e-10 rad.
+// All parameters have errors, also the dropped ones. The estimate finds the combinations that the
+// regrouping names. This holds to first order, so the errors are 1e-3 of realistic ones, whose
+// square is 1e-10 rad.
 TEST_P(Recovery, DroppedParametersAreRegroupedAsReported) {
   const auto [project, chain] = GetParam();
   const ChainModel chain_model = MakeChainModel(project, chain);
@@ -113,8 +113,8 @@ TEST_P(Recovery, DroppedParametersAreRegroupedAsReported) {
   }
 }
 
-// The same with errors of full size: linear regrouping no longer holds, but the calibrated model
-// must predict postures that it has not seen exactly.
+// The same with errors of full size. Linear regrouping no longer holds, but the calibrated model
+// must predict unseen postures exactly.
 TEST_P(Recovery, ErrorsOnAllParametersAreExplainedExactly) {
   const auto [project, chain] = GetParam();
   const ChainModel chain_model = MakeChainModel(project, chain);
@@ -129,8 +129,8 @@ TEST_P(Recovery, ErrorsOnAllParametersAreExplainedExactly) {
   EXPECT_LT(ResidualNorms(result.model, unseen, result.delta).maxCoeff(), 1e-7);
 }
 
-/// The robot with every joint's origin displaced and turned by about `size` (m and rad), or with
-/// all numbers of the origins rounded to four digits behind the point (size 0).
+/// The robot with the origins of all joints displaced and turned by about `size` (m and rad), or
+/// with all numbers of the origins rounded to four decimals (size 0).
 ErrorModel Misaligned(const ErrorModel& model, double size, std::uint64_t seed) {
   Random random(seed);
   RobotTree tree = model.tree;
@@ -150,10 +150,10 @@ ErrorModel Misaligned(const ErrorModel& model, double size, std::uint64_t seed) 
   return MakeErrorModel(tree, model.markers);
 }
 
-// Which parameters can be identified hinges on axes being exactly parallel or meeting in a point;
-// the estimate must not. The robot is as the URDF says but for its errors, the URDF given to the
-// estimator is off by anything between rounding and half a centimetre, as a calibrated URDF is that
-// becomes the next nominal. 0.2 mm of noise.
+// Which parameters are identifiable depends on axes that are exactly parallel or meet in a point.
+// The estimate must not depend on this. The robot is that of the URDF with errors. The URDF for the
+// estimator is off by anything from rounding to half a centimetre, like a calibrated URDF that
+// becomes the next nominal one. The noise is 0.2 mm.
 TEST_P(Recovery, DoesNotHingeOnExactAlignment) {
   const auto [project, chain] = GetParam();
   const ChainModel chain_model = MakeChainModel(project, chain);
@@ -196,9 +196,10 @@ INSTANTIATE_TEST_SUITE_P(
       return name + "_" + chain.param.second;
     });
 
-// 95 % intervals must contain the truth in 95 % of cases: truth from the prior, noise of 0.2 mm,
-// 100 seeds. Over 1800 joint parameters the fraction found has a standard deviation of half a per
-// cent (more where errors of one seed are correlated), so 93-97 % is four of them to either side.
+// 95 % intervals must contain the truth in 95 % of cases. The truth is drawn from the prior, with
+// noise of 0.2 mm and 100 seeds. Over 1800 joint parameters, the share has a standard deviation of
+// half a per cent (more, because errors of one seed are correlated). So 93-97 % allows four of them
+// to either side.
 TEST(Coverage, IntervalsHoldWhatTheyPromise) {
   const ChainModel chain_model = MakeChainModel("models/talos/project.yaml", "leg_left");
   struct Count {
@@ -231,7 +232,7 @@ TEST(Coverage, IntervalsHoldWhatTheyPromise) {
     EXPECT_LE(count.Fraction(), 0.97);
   }
   EXPECT_NEAR(mean_marker_sd, 0.2e-3,
-              0.004e-3);  // from 64 800 coordinates: known to well below 2 %
+              0.004e-3);  // from 64 800 coordinates: within 2 %
 }
 
 TEST(Repeatability, SameInputSameBits) {
@@ -248,7 +249,7 @@ TEST(Repeatability, SameInputSameBits) {
   EXPECT_EQ(first.posterior.covariance, second.posterior.covariance);
 }
 
-// Sums are taken in another order, and nothing else: far below any standard deviation (1e-5).
+// Only the order of summation differs, with an effect far below the standard deviations (1e-5).
 TEST(Repeatability, OrderOfPosturesDoesNotMatter) {
   const ChainModel chain_model = MakeChainModel("models/talos/project.yaml", "leg_left");
   const Eigen::VectorXd truth =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras whose scale is wrong, and a bar of known length that shows it: MuJoCo's arm, from files.
+// MuJoCo's arm from files, with cameras of a wrong scale, which a bar of known length reveals.
 
 #include <fstream>
 #include <sstream>
@@ -27,7 +27,7 @@ class ReferenceLengths : public ::testing::Test {
     SimulateExperiment(project_, options, scratch_.path());
   }
 
-  /// All positions in the files of one trial, or of all, are `factor` times as large.
+  /// Multiplies all positions in the files of one trial, or of all, by `factor`.
   void Scale(double factor, const std::string& only = "") {
     for (const auto& entry : std::filesystem::directory_iterator(scratch_.path())) {
       if (entry.path().extension() != ".tsv") continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report as users get it: at the end of calibrate and validate, and by `elastocal report`.
+// The report as users get it: after `calibrate` and `validate`, and by `elastocal report`.
 
 #include <bit>
 #include <cmath>
@@ -23,7 +23,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The floats of report_data.json, read by other code than wrote them.
+/// The floats of report_data.json, decoded by other code than that which wrote them.
 std::vector<double> Floats(const std::string& base64) {
   static const std::string digits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -72,7 +72,7 @@ class Report : public ::testing::Test {
   }
   Json Read(const std::string& name) const { return Json::parse(ReadFile(out_ + "/" + name)); }
 
-  /// The data in a report.
+  /// The data of a report.
   static Json DataOf(const std::string& file) {
     const std::string page = ReadFile(file);
     const std::string before = "id=\"report-data\">";
@@ -98,8 +98,8 @@ TEST_F(Report, CalibrateWritesWhatThePageShows) {
     for (std::size_t i = 0; i < predicted.size(); ++i) {
       squares += std::pow(1e3 * (predicted[i] - measured[i]), 2);
     }
-    // The figure of the summary from the positions of the view; floats of about a metre are good to
-    // 1e-4 mm.
+    // The positions of the view must give the figure of the summary. Floats of about a metre are
+    // accurate to 1e-4 mm.
     EXPECT_NEAR(std::sqrt(3.0 * squares / static_cast<double>(predicted.size())),
                 summary["rmse_3d_mm"][model].get<double>(), 1e-3);
   }
@@ -138,7 +138,7 @@ TEST_F(Report, SaysHowToGetTheSameAgain) {
 }
 
 TEST_F(Report, TheRecordIsReadFromAnyFolder) {
-  // Typed in the recording's folder, by relative names.
+  // The command is typed in the recording's folder, with relative names.
   std::filesystem::copy(project_, scratch_.path() / "arm6_project.yaml");
   std::filesystem::copy(SourceFile("tests/robots/arm6.urdf"), scratch_.path() / "arm6.urdf");
   const std::string recording = std::filesystem::path(recording_).filename().string();
@@ -194,7 +194,7 @@ TEST_F(Report, LeavesOutWhatIsOfAnotherCalibration) {
   EXPECT_TRUE(before.contains("validation"));
   EXPECT_TRUE(before.contains("diagnosis"));
 
-  ASSERT_EQ(Calibrate().exit_code, 0);  // by the second recording
+  ASSERT_EQ(Calibrate().exit_code, 0);  // with the second recording
   const Json after = DataOf(out_ + "/report.html");
   EXPECT_FALSE(after.contains("validation"));
   EXPECT_FALSE(after.contains("diagnosis"));

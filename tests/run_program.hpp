@@ -15,7 +15,7 @@ struct ProgramResult {
 /// The built `elastocal`.
 std::string ProgramFile();
 
-/// What the build generates from its definitions: the manual page, the completions of shells.
+/// A file that the build generates: the manual page, or the completions of shells.
 std::filesystem::path GeneratedFile(const std::string& name);
 
 /// Runs the built `elastocal` with these arguments, as a shell would.

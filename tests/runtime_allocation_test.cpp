@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// No call of the compensator allocates: malloc, through which operator new goes as well, counts.
+// The compensator never allocates. The test counts calls of malloc, which operator new uses as
+// well.
 #include <cstdlib>
 #include <vector>
 
@@ -18,7 +19,7 @@ bool counting = false;
 
 }  // namespace
 
-// The sanitizers have a malloc of their own.
+// The sanitizers replace malloc themselves.
 #if defined(__GLIBC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
 #define ELASTOCAL_COUNTS_ALLOCATIONS
 extern "C" void* __libc_malloc(std::size_t size);  // NOLINT
@@ -49,13 +50,13 @@ TEST(RuntimeAllocation, NoCallAllocates) {
     robot.Forward(q, none, feet);
     robot.Correct(q, torque, feet);
     robot.Command(q, none, feet);
-    robot.Command(project.motion.lower, none, feet);  // searches longer
+    robot.Command(project.motion.lower, none, feet);  // needs a longer search
     robot.Command(targets.data(), q, torque, feet);
   }
   counting = false;
   EXPECT_EQ(allocations, 0);
   counting = true;
-  const std::vector<double> taken(3, 1.0);  // the hook works
+  const std::vector<double> taken(3, 1.0);  // shows that the hook works
   counting = false;
   EXPECT_GT(allocations, 0);
   EXPECT_EQ(taken.size(), 3U);

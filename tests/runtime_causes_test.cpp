@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a calibration takes beside geometry and springs, and which limbs yield, at run time.
+// Causes that a calibration found besides geometry and springs, and limbs that yield, at run time.
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -12,14 +12,14 @@
 namespace elastocal {
 namespace {
 
-/// What a model file keeps of a robot.
+/// The robot as a model file stores it.
 Compensator ReadBack(const RuntimeModel& model) {
   std::stringstream file;
   WriteRuntimeModel(model, file);
   return Compensator(ReadRuntimeModel(file, "file"));
 }
 
-// A head gives way to the arms on its trunk; a limb that is alone on its joints gives way to none.
+// A head yields to the arms on its trunk. A limb whose joints move no other limb yields to none.
 TEST_F(Runtime, OnlyShortLimbsBesideLongOnesYield) {
   RuntimeModel model = MakeRuntimeModel(project_, stored_);
   int yielding = 0;
@@ -33,8 +33,7 @@ TEST_F(Runtime, OnlyShortLimbsBesideLongOnesYield) {
   for (const ec_tip& tip : model.tips) EXPECT_EQ(tip.yields, 0);
 }
 
-// What the calibration found beside geometry and springs shifts joints, and changes what they
-// carry.
+// Causes besides geometry and springs shift joints and change their loads.
 TEST_F(Runtime, AppliesWhatTheCalibrationFoundBesideGeometryAndSprings) {
   const RobotTree& tree = project_.tree;
   const auto joint = [&](const char* name) { return FindJoint(tree, name); };
@@ -91,7 +90,7 @@ TEST_F(Runtime, AppliesWhatTheCalibrationFoundBesideGeometryAndSprings) {
     largest = std::max(largest, Distance(expected[i], without[i]));
   }
   EXPECT_GT(largest, 1e-3);
-  // A command brings the hands to where the nominal robot has them.
+  // A command must bring the hands to where the nominal robot has them.
   EXPECT_EQ(robot.Command(q, kNoTorque, 0), 0u);
   EXPECT_LT(robot.residual_m(), 1e-5);
   Compensator read = ReadBack(robot.model());
@@ -101,8 +100,8 @@ TEST_F(Runtime, AppliesWhatTheCalibrationFoundBesideGeometryAndSprings) {
   }
 }
 
-// A joint that lags by 2 mrad: what it moves stands still while it crosses its play of 4 mrad.
-// Plans cross it by themselves.
+// A joint lags by 2 mrad: its link stands still while the joint crosses its play of 4 mrad. Plans
+// can cross the play on their own.
 TEST_F(Runtime, FollowsAJointThroughItsPlay) {
   Compensator plain = Make();
   stored_.joint_errors["arm_left_4_joint.hysteresis"] = -2e-3;
@@ -115,13 +114,13 @@ TEST_F(Runtime, FollowsAJointThroughItsPlay) {
     q[at] += by;
     return q;
   };
-  // The encoder, and where the joint is.
+  // Positions of the encoder, and of the joint.
   for (const auto& [encoder, joint] : std::initializer_list<std::pair<double, double>>{
            {0.0, 0.0}, {1e-3, 0.0}, {0.05, 0.048}, {0.049, 0.048}, {0.046, 0.048}, {0.03, 0.032}}) {
     robot.Forward(moved(encoder), kNoTorque, 0);
     plain.Forward(moved(joint), kNoTorque, 0);
     for (int i = 0; i < static_cast<int>(robot.model().links.size()); ++i) {
-      // The first loads are those at the encoders.
+      // The loads of the first step are those at the encoders.
       EXPECT_LT(Distance(robot.link_pose(i), Transform(plain.link_pose(i).matrix())), 1e-7);
     }
     robot.Command(moved(0.02 - encoder), kNoTorque, 0);
@@ -129,7 +128,7 @@ TEST_F(Runtime, FollowsAJointThroughItsPlay) {
   }
 }
 
-// A held root link whose suspension gives way takes all of the robot along.
+// A root link that gives way in its suspension moves the whole robot.
 TEST_F(Runtime, SinksAsTheCalibrationFoundItsSuspension) {
   const Eigen::VectorXd q = Posture(5);
   const JointLoads first = GravityLoads(robot_.model, geometry_, q, kGravity, 0);
@@ -152,7 +151,8 @@ TEST_F(Runtime, SinksAsTheCalibrationFoundItsSuspension) {
   EXPECT_EQ(robot.Forward(q, kNoTorque, 0), 0u);
   double largest = 0.0;
   for (std::size_t i = 0; i < level.size(); ++i) {
-    // The moment of the posture before the last of the fixed point: its deflection is left.
+    // The moment is that of the posture before the last step of the fixed point, so its deflection
+    // remains.
     EXPECT_LT(Distance(robot.link_pose(static_cast<int>(i)), sunk * level[i]), 1e-6);
     largest = std::max(largest, Distance(sunk * level[i], level[i]));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Corrections at run time that start and end gently.
+// Gentle starts and ends of corrections at run time.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -15,13 +15,13 @@
 namespace elastocal {
 namespace {
 
-constexpr double kSpeed = 0.03;  // of each joint, rad a call: 3 rad/s at 100 calls a second
+constexpr double kSpeed = 0.03;  // rad a call for each joint: 3 rad/s at 100 calls a second
 constexpr double kCalls = 3.0;
-constexpr double kMostChange = EC_GENTLE * kSpeed / kCalls;  // of the pace
+constexpr double kMostChange = EC_GENTLE * kSpeed / kCalls;  // largest change of the pace
 
 struct Eased {
-  double change_of_pace = 0.0;  ///< largest, of a correction from one call to the next
-  double change = 0.0;          ///< largest, of a command
+  double change_of_pace = 0.0;  ///< largest of a correction between calls
+  double change = 0.0;          ///< largest of a command
   std::vector<double> residual_m;
   Eigen::VectorXd last;
   unsigned status = 0;
@@ -53,7 +53,7 @@ Eased PlayEased(Compensator& robot, const std::vector<Eigen::VectorXd>& plans, d
   return played;
 }
 
-/// A knee that goes along a cosine, in half a period: no acceleration of the plan is a step.
+/// A knee that follows half a period of a cosine. The plan's accelerations have no steps.
 std::vector<Eigen::VectorXd> SmoothKnee(double from, double to, int count) {
   std::vector<Eigen::VectorXd> plans;
   for (int i = 0; i <= count; ++i) {
@@ -68,8 +68,8 @@ double LargestOf(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
 
-// The leg is by 4 mm too short. Straight, its best knee stays at 0, and leaves and joins the plan's
-// within a call.
+// The leg is 4 mm too short. While the plan's leg is stretched, the best knee angle is 0, which it
+// joins and leaves within one call.
 TEST(RuntimeEasing, ThroughTheStretchedPostureAccelerationsAreBounded) {
   Compensator robot = PlanarLeg(-4e-3, -2.3, 2.3).Make();
   robot.LimitChanges(Eigen::Vector3d::Constant(kSpeed));
@@ -80,14 +80,16 @@ TEST(RuntimeEasing, ThroughTheStretchedPostureAccelerationsAreBounded) {
     EXPECT_GT(at_once.change_of_pace, 2.5 * kMostChange) << to;
     EXPECT_LE(eased.change_of_pace, kMostChange + 1e-12) << to;
     EXPECT_LE(eased.change, kSpeed + 1e-12);
-    // In the end the same, and on the way little more than a leg that is too short leaves anyway.
+    // The final command is the same. On the way, the residual is little more than that of a leg
+    // that is too short.
     EXPECT_LT((eased.last - at_once.last).cwiseAbs().maxCoeff(), 1e-3) << to;
     EXPECT_NEAR(eased.residual_m.back(), at_once.residual_m.back(), 2e-5) << to;
     EXPECT_LT(LargestOf(eased.residual_m), LargestOf(at_once.residual_m) + 1e-3) << to;
   }
 }
 
-// What the search leaves and what the gentle command leaves is one number: that of the robot.
+// The residual counts both what the search leaves and what the gentle command leaves. It is that of
+// the robot.
 TEST(RuntimeEasing, TheResidualIsThatOfTheCommandThatIsGiven) {
   Compensator robot = PlanarLeg(-4e-3, -2.3, 2.3).Make(), real = PlanarLeg(-4e-3, -2.3, 2.3).Make();
   Compensator nominal = PlanarLeg(0.0, -2.3, 2.3).Make();
@@ -109,7 +111,7 @@ TEST(RuntimeEasing, TheResidualIsThatOfTheCommandThatIsGiven) {
   EXPECT_GT(said, 0);
 }
 
-// Where the best command is gentle by itself it is given, to the bit.
+// If the best command is gentle by itself, the given command has the same bits.
 TEST(RuntimeEasing, AGentleCommandIsTheBest) {
   Compensator robot = PlanarLeg(4e-3, -2.3, 2.3).Make(), free = PlanarLeg(4e-3, -2.3, 2.3).Make();
   robot.LimitChanges(Eigen::Vector3d::Constant(kSpeed));
@@ -120,7 +122,7 @@ TEST(RuntimeEasing, AGentleCommandIsTheBest) {
     free.Command(plan, kNoTorque, 0);
     EXPECT_TRUE(robot.command() == free.command());
   }
-  // Without a limit of speed there is nothing to come to.
+  // Without a limit of speed, easing changes nothing.
   Compensator unlimited = PlanarLeg(-4e-3, -2.3, 2.3).Make();
   const std::vector<Eigen::VectorXd> plans = SmoothKnee(0.5, 0.02, 100);
   const Eased at_once = PlayEased(unlimited, plans, 0.0);
@@ -129,8 +131,8 @@ TEST(RuntimeEasing, AGentleCommandIsTheBest) {
   EXPECT_EQ(PlayEased(unlimited, plans, std::nan("")).last, at_once.last);
 }
 
-// Plans that jump about, over limits and through stretched postures: limits hold first, also where
-// one call is the end of an approach at full pace.
+// Plans that jump, go beyond limits and pass stretched postures. Limits have priority, even if one
+// call must end an approach at full pace.
 TEST(RuntimeEasing, LimitsAreKept) {
   Random random(4);
   for (int run = 0; run < 40; ++run) {
@@ -166,7 +168,7 @@ TEST(RuntimeEasing, LimitsAreKept) {
 
 class RuntimeEasingTalos : public Runtime {};
 
-// As in RuntimeFollowingTalos, at 100 calls a second.
+// As in RuntimeFollowingTalos, with 100 calls a second.
 TEST_F(RuntimeEasingTalos, ANearlyStretchedArmMovesGently) {
   Compensator robot = Make();
   const std::vector<Eigen::VectorXd> plans = StretchOfElbow(300);
@@ -179,8 +181,8 @@ TEST_F(RuntimeEasingTalos, ANearlyStretchedArmMovesGently) {
   EXPECT_LT(eased.residual_m.back(), 2e-5);
 }
 
-// A foot that is lifted changes the loads at once, and the legs with them. What was done before
-// that call has no part in what comes after it.
+// Lifting a foot changes the loads at once, and with them the legs. Commands after that call do not
+// depend on those before it.
 TEST_F(RuntimeEasingTalos, AStepOfTheSupportIsCorrectedAtOnce) {
   Compensator robot = Make(), free = Make();
   robot.LimitChanges(Eigen::VectorXd::Constant(project_.motion.rest.size(), kSpeed));

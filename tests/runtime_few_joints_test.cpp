@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands of robots whose arms have too few joints for place and attitude of the hand.
+// Commands of robots whose arms have too few joints for position and attitude of the hand.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -19,7 +19,7 @@
 namespace elastocal {
 namespace {
 
-/// A limb of so many joints on a body, with a tip at its end.
+/// Adds a limb of so many joints to a body, with a tip at its end.
 void AddLimb(int joints, int parent, int foot, RuntimeModel& model) {
   for (int i = 0; i < joints; ++i) {
     ec_joint joint{};
@@ -36,7 +36,7 @@ void AddLimb(int joints, int parent, int foot, RuntimeModel& model) {
   model.tips.push_back(tip);
 }
 
-/// The mini humanoid's posture of rest with bent elbows, by which a hand can be put elsewhere.
+/// The mini humanoid's posture of rest with bent elbows, which give the hands room to move.
 Eigen::VectorXd BentArms(const Project& project) {
   Eigen::VectorXd q = project.motion.rest;
   for (const auto& [joint, position] :
@@ -51,7 +51,7 @@ bool IsOfArm(const std::string& name) {
   return name.find("shoulder") != std::string::npos || name.find("elbow") != std::string::npos;
 }
 
-/// Two arms and a neck of two joints on one waist joint, and a leg of five.
+/// Two arms and a neck of two joints, on one waist joint, and a leg of five joints.
 std::vector<double> ArmsOf(int joints) {
   RuntimeModel model;
   AddLimb(1, 0, -2, model);
@@ -65,14 +65,15 @@ std::vector<double> ArmsOf(int joints) {
   return arms;
 }
 
-// Eleven joints for twelve numbers: the neck's two help no hand. With six each, thirteen.
+// Eleven joints for twelve numbers: the neck's two joints move no hand. With arms of six joints,
+// there are thirteen.
 TEST(RuntimeFewJoints, ThePlaceOfAHandComesFirstWhereJointsAreTooFew) {
   EXPECT_EQ(ArmsOf(5), (std::vector{EC_ARM_OF_FEW, EC_ARM_OF_FEW, EC_ARM, EC_ARM}));
   EXPECT_EQ(ArmsOf(6), (std::vector{EC_ARM, EC_ARM, EC_ARM, EC_ARM}));
 }
 
-// Two arms of four joints and a neck of two on a trunk of five, as Poppy: 15 joints for 18 numbers.
-// The neck's end is moved by seven, of which the trunk's five move the hands as well.
+// Two arms of four joints and a neck of two, on a trunk of five, like Poppy: 15 joints for 18
+// numbers. Seven joints move the neck's end, but five of them, the trunk's, move the hands as well.
 TEST(RuntimeFewJoints, AHeadOnAJointedTrunkIsNoArm) {
   RuntimeModel model;
   AddLimb(5, 0, -2, model);
@@ -101,8 +102,8 @@ TEST(RuntimeFewJoints, TalosHasJointsEnough) {
   }
 }
 
-// Springs so soft that they bend by some milliradians. From what two steps give, as many as a
-// search wants change nothing.
+// The springs are so soft that they bend by some milliradians. After two steps, further steps
+// change nothing.
 TEST(RuntimeFewJoints, CorrectedPositionsNeedNoThirdStep) {
   const Project project = ReadProject(SourceFile("tests/robots/mini_humanoid_project.yaml"));
   StoredCalibration stored = RandomCalibration(project, 1);
@@ -137,8 +138,8 @@ TEST(RuntimeFewJoints, CorrectedPositionsNeedNoThirdStep) {
   EXPECT_LT(missed, 0.01 * corrected);
 }
 
-// Errors of half a degree and a millimetre a joint. With turns as heavy as those of other
-// limbs, 2.3 mm and 0.2 degrees are left.
+// Each joint has errors of half a degree and a millimetre. If turns had the weight that they have
+// for other limbs, 2.3 mm and 0.2 degrees would remain.
 TEST(RuntimeFewJoints, ArmsOfFourJointsBringTheHandToItsPlace) {
   const Project project = ReadProject(SourceFile("tests/robots/mini_humanoid_project.yaml"));
   StoredCalibration stored = RandomCalibration(project, 1);

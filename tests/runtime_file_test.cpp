@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The file in which the robot at run time reaches a controller.
+// The file that brings the robot at run time to a controller.
 #include <sstream>
 #include <stdexcept>
 #include <string>

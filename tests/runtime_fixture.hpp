@@ -18,7 +18,7 @@
 
 namespace elastocal {
 
-// Rounding of a chain of 14 joints, a few units in the last place of metres.
+// Rounding along a chain of 14 joints: a few units in the last place of a metre.
 inline constexpr double kRounding = 1e-13;
 
 inline const Eigen::VectorXd kNoTorque;
@@ -34,7 +34,7 @@ class Runtime : public testing::Test {
         stored_(RandomCalibration(project_, 1)),
         robot_(RestoreRobot(project_, stored_)),
         geometry_(ApplyErrors(robot_.model, robot_.errors)) {
-    // With the root link as reference: the errors of the waist are zero.
+    // The root link is the reference, so the errors of the waist are zero.
     PlaceWaist(Transform::Identity(), Vector6d::Zero(), geometry_);
   }
 
@@ -42,8 +42,8 @@ class Runtime : public testing::Test {
     return Compensator(MakeRuntimeModel(project_, stored_, content));
   }
 
-  /// The posture of rest, in which the right elbow opens to 6 degrees from straight and closes
-  /// again within so many steps.
+  /// The posture of rest. The right elbow opens to 6 degrees from straight and closes again within
+  /// so many steps.
   std::vector<Eigen::VectorXd> StretchOfElbow(int steps) const {
     const int elbow = FindJoint(project_.tree, "arm_right_4_joint");
     const int c = project_.tree.joints[static_cast<std::size_t>(elbow)].coordinate;
@@ -55,7 +55,7 @@ class Runtime : public testing::Test {
     return plans;
   }
 
-  /// A standing posture with other arms and legs.
+  /// A standing posture with random arms and legs.
   Eigen::VectorXd Posture(std::uint64_t seed) const {
     Random random(seed);
     Eigen::VectorXd q = project_.motion.rest;
@@ -65,7 +65,7 @@ class Runtime : public testing::Test {
     return q.cwiseMax(project_.motion.lower).cwiseMin(project_.motion.upper);
   }
 
-  /// Gravity in the root link's frame for the foot `leg` flat on the floor.
+  /// Gravity in the root link's frame if the foot of leg `leg` is flat on the floor.
   Eigen::Vector3d Gravity(const std::vector<Transform>& T_root_link, int leg) const {
     const std::vector<Leg> legs = Legs();
     const Leg& on = legs[static_cast<std::size_t>(leg)];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands of the robot along a motion: they go on from the last one.
+// Commands along a motion, each of which continues from the last one.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -14,9 +14,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kStep = 1e-3;  // of the planned knee from one sample to the next, rad
+constexpr double kStep = 1e-3;  // rad, change of the planned knee from one sample to the next
 
-/// Knees from one angle to another.
+/// Plans in which the knee goes from one angle to another.
 std::vector<Eigen::VectorXd> Knees(double from, double to) {
   std::vector<Eigen::VectorXd> plans;
   const int count = static_cast<int>(std::lround(std::abs(to - from) / kStep));
@@ -27,8 +27,8 @@ std::vector<Eigen::VectorXd> Knees(double from, double to) {
 }
 
 struct Played {
-  double largest_change = 0.0;     ///< of a joint's command from one sample to the next
-  std::vector<double> residual_m;  ///< by sample
+  double largest_change = 0.0;     ///< of a joint's command between samples
+  std::vector<double> residual_m;  ///< for each sample
   std::vector<double> residual_rad;
   unsigned status = 0;
 };
@@ -55,8 +55,8 @@ double Largest(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
 
-// The knee lags by 2 mrad. Commands of a motion there and back lead to where the plan is, but while
-// the knee crosses its play, where it is off by 2 mrad at most; they do not jump.
+// The knee lags by 2 mrad. Commands of a motion there and back follow the plan without jumps, with
+// errors of at most 2 mrad while the knee crosses its play.
 TEST(RuntimeFollowing, CommandsTakeAJointThroughItsPlay) {
   constexpr double kLag = 2e-3;
   RuntimeModel model = PlanarLeg(0.0, -2.3, 2.3).Make().model();
@@ -82,28 +82,29 @@ TEST(RuntimeFollowing, CommandsTakeAJointThroughItsPlay) {
   }
   EXPECT_GT(off, 0);
   EXPECT_LE(off,
-            static_cast<int>(3.0 * kLag / kStep));  // a half at first, all of it on the way back
+            static_cast<int>(3.0 * kLag / kStep));  // half at first, all on the way back
 }
 
-// The leg is longer than nominal, so that its knee is bent by 0.2 rad where the plan's is straight.
-// The plan goes on to the other side, where a bend to this side would be a correction of more than
-// 0.25 rad: the knee has to come over.
+// The leg is longer than nominal, so that its knee is bent by 0.2 rad where the plan's knee is
+// straight. The plan then bends to the other side, where a bend to this side would be a correction
+// of more than 0.25 rad. So the knee must come over.
 TEST(RuntimeFollowing, AKneeThatComesOverDoesNotJump) {
   Compensator robot = PlanarLeg(4e-3, -2.3, 2.3).Make();
   const std::vector<Eigen::VectorXd> plans = Knees(0.3, -0.6);
-  EXPECT_GT(Play(robot, plans, true).largest_change, 0.15);  // each call by itself
+  EXPECT_GT(Play(robot, plans, true).largest_change, 0.15);  // each call independent of the others
   robot.Forget();
   const Played played = Play(robot, plans, false);
   EXPECT_LE(played.largest_change, 2.0 * kStep + 2e-4 + 1e-12);
   EXPECT_EQ(played.status, unsigned{EC_CORRECTION_CUT});
-  // The knee stays at its largest correction, for a sine of 0.25 rad of the foot's 0.1 m at most.
+  // The knee keeps its largest correction, which for the foot's 0.1 m is at most the sine of 0.25
+  // rad.
   EXPECT_LT(Largest(played.residual_m), 15e-3);
   EXPECT_LT(played.residual_m.back(), 2e-5);
   EXPECT_LT(played.residual_rad.back(), 1e-4);
 }
 
-// Where the knee comes back its bend to the same side is a solution all the time: the command
-// hardly moves while the plan's knee goes through the straight posture.
+// The knee comes back, so that a bend to the same side is always a solution. The command hardly
+// moves while the plan's knee passes the straight posture.
 TEST(RuntimeFollowing, WhereASolutionGoesOnNothingIsLeft) {
   Compensator robot = PlanarLeg(4e-3, -2.3, 2.3).Make();
   std::vector<Eigen::VectorXd> plans = Knees(0.3, -0.03);
@@ -118,8 +119,8 @@ TEST(RuntimeFollowing, WhereASolutionGoesOnNothingIsLeft) {
   EXPECT_EQ(played.status, 0U);
 }
 
-// A leg that is too short cannot reach where the plan's knee is nearly straight. Calls by
-// themselves leave as much.
+// A leg that is too short cannot reach the plan's nearly straight knee. Independent calls have the
+// same residual.
 TEST(RuntimeFollowing, WhatNoCommandReachesIsLeftAsBefore) {
   Compensator robot = PlanarLeg(-4e-3, -2.3, 2.3).Make();
   const std::vector<Eigen::VectorXd> plans = Knees(0.5, -0.5);
@@ -134,7 +135,7 @@ TEST(RuntimeFollowing, WhatNoCommandReachesIsLeftAsBefore) {
   }
 }
 
-// Targets that move while the nominal posture stays are followed as well.
+// The commands also follow targets that move while the nominal posture is constant.
 TEST(RuntimeFollowing, TargetsThatMoveAreFollowed) {
   Compensator robot = PlanarLeg(4e-3, -2.3, 2.3).Make(), alone = PlanarLeg(4e-3, -2.3, 2.3).Make();
   PlanarChain leg = PlanarLeg(0.0, -2.3, 2.3);
@@ -147,7 +148,7 @@ TEST(RuntimeFollowing, TargetsThatMoveAreFollowed) {
     robot.Command(&target, middle, kNoTorque, 0);
     EXPECT_LT(robot.residual_m(), 2e-5) << i;
   }
-  // One that is far away has nothing to do with the last one.
+  // The command for a distant target does not depend on the last one.
   nominal.Forward(Eigen::Vector3d(0.3, 0.6, -0.2), kNoTorque, 0);
   const Eigen::Isometry3d target = nominal.link_pose(0);
   robot.Command(&target, middle, kNoTorque, 0);
@@ -155,7 +156,8 @@ TEST(RuntimeFollowing, TargetsThatMoveAreFollowed) {
   EXPECT_TRUE(robot.command() == alone.command());
 }
 
-// Speeds of joints: no command changes by more from one call to the next, but for a plan that does.
+// Speeds of joints are limited: a command changes no faster than that between calls, unless the
+// plan does.
 TEST(RuntimeFollowing, NoJointIsFasterThanItsLimit) {
   Compensator robot = PlanarLeg(-4e-3, -2.3, 2.3).Make();
   const std::vector<Eigen::VectorXd> plans = Knees(0.5, 0.2);
@@ -176,25 +178,25 @@ TEST(RuntimeFollowing, NoJointIsFasterThanItsLimit) {
   EXPECT_GT(free[1], 2.0 * kStep);
   robot.LimitChanges(Eigen::Vector3d(0.5e-3, 1.5 * kStep, -1.0));
   Eigen::Vector3d limited = largest_changes();
-  EXPECT_LE(limited[0], 0.05e-3 + 1e-12);  // a tenth of it, beside a plan that stands
+  EXPECT_LE(limited[0], 0.05e-3 + 1e-12);  // a tenth of the limit, as the plan stands still
   EXPECT_LE(limited[1], 1.15 * kStep + 1e-12);
   EXPECT_GT(limited[1], 1.05 * kStep);
   robot.LimitChanges(Eigen::Vector3d(-1.0, 1.05 * kStep, -1.0));
   EXPECT_LE(largest_changes()[1], 1.05 * kStep + 1e-12);
   robot.LimitChanges(Eigen::Vector3d::Constant(0.5 * kStep));
   limited = largest_changes();
-  EXPECT_NEAR(limited[1], kStep, 1e-12);  // the plan's own
+  EXPECT_NEAR(limited[1], kStep, 1e-12);  // the plan's own change
   EXPECT_GT(robot.residual_m(), 1e-3);
   for (int i = 0; i < 3000; ++i) robot.Command(plans.back(), kNoTorque, 0);
   EXPECT_LT(robot.residual_m(), 1e-4);
-  robot.LimitChanges(kNoTorque);  // no more
+  robot.LimitChanges(kNoTorque);  // removes the limits
   EXPECT_EQ(largest_changes(), free);
 }
 
 class RuntimeFollowingTalos : public Runtime {};
 
-// The arm is too short for the hand's place for a moment. A lean of the trunk to this side or that
-// would help by a millimetre or two, and the way from one to the other cost eight.
+// For a moment, the arm is too short to reach the hand's place. A lean of the trunk to either side
+// would help by a millimetre or two, but the change from one side to the other would cost eight.
 TEST_F(RuntimeFollowingTalos, ANearlyStretchedArmKeepsItsSolution) {
   Compensator robot = Make();
   const std::vector<Eigen::VectorXd> plans = StretchOfElbow(100);
@@ -215,7 +217,7 @@ TEST_F(RuntimeFollowingTalos, CallsFarFromEachOtherStandByThemselves) {
     EXPECT_EQ(robot.Command(q, kNoTorque, feet), alone.Command(q, kNoTorque, feet));
     EXPECT_TRUE(robot.command() == alone.command()) << seed;  // the same bits
     EXPECT_EQ(robot.residual_m(), alone.residual_m());
-    // What comes between does not matter.
+    // Calls in between do not matter.
     robot.Forward(Posture(seed + 100), kNoTorque, 0);
     robot.Correct(Posture(seed + 200), kNoTorque, 0);
   }
@@ -241,7 +243,7 @@ TEST_F(RuntimeFollowingTalos, ARobotThatShallStandStands) {
   Compensator robot = Make();
   const Eigen::VectorXd from = Posture(1);
   for (int i = 0; i < 10; ++i) robot.Command(from.array() + 0.01 * i, kNoTorque, 3);
-  for (int i = 0; i < 5; ++i) robot.Command(from.array() + 0.1, kNoTorque, 3);  // comes to rest
+  for (int i = 0; i < 5; ++i) robot.Command(from.array() + 0.1, kNoTorque, 3);  // it comes to rest
   const Eigen::VectorXd command = robot.command();
   const double left = robot.residual_m();
   for (int i = 0; i < 10; ++i) {
@@ -249,7 +251,7 @@ TEST_F(RuntimeFollowingTalos, ARobotThatShallStandStands) {
     EXPECT_TRUE(robot.command() == command) << i;
     EXPECT_NEAR(robot.residual_m(), left, 2e-5);
   }
-  // Torques that are given from now on are corrected at once, and others by 0.2 mrad a call.
+  // Newly given torques are corrected at once, and later ones by 0.2 mrad a call.
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(robot.robot().joints);
   EXPECT_EQ(robot.Command(from.array() + 0.1, zero, 3), 0U);
   EXPECT_LT(robot.residual_m(), 2e-4);
@@ -262,7 +264,7 @@ TEST_F(RuntimeFollowingTalos, ARobotThatShallStandStands) {
   EXPECT_LT(robot.residual_m(), 1e-4);
 }
 
-// Loads jump where a foot is lifted: what the legs have to do then is done at once.
+// Loads jump when a foot is lifted. The legs are corrected at once.
 TEST_F(RuntimeFollowingTalos, AStepOfTheSupportIsCorrectedAtOnce) {
   Compensator robot = Make();
   const Eigen::VectorXd q = project_.motion.rest;

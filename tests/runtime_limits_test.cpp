@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands of the robot at run time where limits of joints are in the way.
+// Commands of the robot at run time if limits of joints stand in the way.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -15,12 +15,12 @@
 namespace elastocal {
 namespace {
 
-/// From hip to ankle.
+/// Distance from hip to ankle.
 double Reach(double shank, double knee) {
   return std::sqrt(kThigh * kThigh + shank * shank + 2.0 * kThigh * shank * std::cos(knee));
 }
 
-/// The end's error at `q`, with the angle as Command weighs it.
+/// The error of the end at `q`, with the weight that Command gives to the angle.
 double ErrorAt(Compensator& robot, const Eigen::Isometry3d& wanted, const Eigen::VectorXd& q) {
   robot.Forward(q, kNoTorque, 0);
   const Eigen::Isometry3d got = robot.link_pose(0);
@@ -28,8 +28,8 @@ double ErrorAt(Compensator& robot, const Eigen::Isometry3d& wanted, const Eigen:
                     EC_ARM * Eigen::AngleAxisd(wanted.linear().transpose() * got.linear()).angle());
 }
 
-// The knee must bend by 0.2 rad so that the longer leg is as long as the nominal one. It is planned
-// slightly to the side where its limit is 0.05 rad away, and the step from there goes to that side.
+// The knee must bend by 0.2 rad to make the longer leg as long as the nominal one. The plan bends
+// it slightly to the side whose limit is 0.05 rad away, and the first step goes to that side.
 TEST(RuntimeLimits, AStraightKneeBendsToTheSideWhereItCan) {
   const double longer = 4e-3;
   Compensator robot = PlanarLeg(longer, -0.05, 2.3).Make();
@@ -52,14 +52,14 @@ TEST(RuntimeLimits, AKneeThatCannotBendIsNamed) {
   EXPECT_EQ(robot.stopped(), (std::vector<unsigned>{0, EC_JOINT_LIMIT, 0}));
   EXPECT_NEAR(robot.left_m(1), std::hypot(robot.residual_m(), EC_ARM * robot.residual_rad()),
               1e-12);
-  // The best is the further of the limits. With the foot in line that leaves so much; turning the
-  // foot by a milliradian saves some micrometres.
+  // The further limit is the best position. With the foot in line, this residual remains. Turning
+  // the foot by a milliradian saves some micrometres.
   EXPECT_EQ(robot.command()[1], -0.08);
   EXPECT_NEAR(robot.residual_m(), Reach(kShank + 4e-3, 0.08) - Reach(kShank, 0.0), 3e-5);
 }
 
-// The lift could do all of it, but for its limit 2 mm below. The three joints of the arm can as
-// well. The arm's root is by 12 mm higher than nominal.
+// The lift could do the whole correction but for its limit 2 mm below. The three joints of the arm
+// can do it as well. The arm's root is 12 mm higher than nominal.
 TEST(RuntimeLimits, TheArmTakesOverWhatTheLiftCannot) {
   PlanarChain chain;
   chain.lift = true;
@@ -73,7 +73,7 @@ TEST(RuntimeLimits, TheArmTakesOverWhatTheLiftCannot) {
   EXPECT_EQ(robot.command()[0], 0.0);
   EXPECT_LT(robot.residual_m(), 2e-5);
   EXPECT_EQ(robot.stopped(), std::vector<unsigned>(4, 0));
-  // With room the lift does it alone: the others stay at the plan.
+  // With enough room, the lift does the correction alone, and the others stay at the plan.
   chain.lower[0] = -0.1;
   Compensator free = chain.Make();
   free.Command(plan, kNoTorque, 0);
@@ -111,10 +111,10 @@ TEST(RuntimeLimits, ACommandIsNeverWorseThanThePlan) {
     }
     EXPECT_LE(ErrorAt(robot, wanted, command), ErrorAt(robot, wanted, plan) + 1e-12) << i;
   }
-  EXPECT_GT(stopped, 200);  // limits were in the way
+  EXPECT_GT(stopped, 200);  // limits did stand in the way
 }
 
-// The same on whole TALOS with springs, in postures over the whole of the joints' ranges.
+// The same for the whole TALOS with springs, with postures over the whole ranges of its joints.
 TEST_F(Runtime, ACommandIsNeverWorseThanThePlan) {
   Compensator robot = Make();
   Random random(6);

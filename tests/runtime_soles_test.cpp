@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What gives way below the markers of the feet, at run time.
+// Springs below the markers of the feet, at run time.
 #include <gtest/gtest.h>
 
 #include "elastocal/robot/legs.hpp"
@@ -29,7 +29,7 @@ TEST_F(Runtime, ASoleSinksByTheWholeWeight) {
     firm.Forward(q, kNoTorque, 2u >> leg);
     soft.Forward(q, kNoTorque, 2u >> leg);
     EXPECT_EQ(firm.root_pose().matrix(), soft.root_pose().matrix());
-    // The geometry by itself has no springs, and one that may be none is not applied.
+    // The model of the geometry has no springs. A spring that may be zero is not applied.
     stored_.soles[0].sd = 1e-6;
     Compensator unknown = Make();
     firm.Forward(q, kNoTorque, 1u << leg);
@@ -41,7 +41,7 @@ TEST_F(Runtime, ASoleSinksByTheWholeWeight) {
 }
 
 TEST_F(Runtime, OnTwoFeetEachSoleSinksByWhatItBears) {
-  for (auto& [name, value] : stored_.joint_errors) value = 0.0;  // the feet share evenly
+  for (auto& [name, value] : stored_.joint_errors) value = 0.0;  // the feet carry equal shares
   Compensator firm = Make();
   const double weight = 9.81 * TotalMass(project_.tree);
   for (const Leg& leg : Legs()) {
@@ -54,8 +54,9 @@ TEST_F(Runtime, OnTwoFeetEachSoleSinksByWhatItBears) {
   EXPECT_NEAR(sunk, 0.5e-6 * weight, 1e-6);
 }
 
-// A lifted leg hangs on its own springs, and a calibration takes it as it hangs. Standing on one
-// foot then tells the compliance of the leg, which on two feet is to give way as in the simulator.
+// A lifted leg hangs on its own springs, and the calibration describes it in this state. Standing
+// on one foot then tells the compliance of the leg. On two feet, the leg must give way as in the
+// simulator.
 TEST_F(Runtime, OnTwoFeetLegsGiveWayAsTheirSpringsDo) {
   TrueRobot robot = NominalRobot(project_.tree, project_.markers, Legs(), {});
   for (const Leg& leg : robot.legs) {
@@ -87,7 +88,7 @@ TEST_F(Runtime, OnTwoFeetLegsGiveWayAsTheirSpringsDo) {
   set(1e-6);
   set(1e-6 * on_one / sinks(1));
   EXPECT_NEAR(sinks(1), on_one, 1e-3 * on_one);
-  // By the whole of the legs' weight, it would be a fifth less.
+  // With the whole weight of the legs, it would give way by a fifth less.
   EXPECT_NEAR(sinks(3), on_two, 0.02 * on_two);
 }
 

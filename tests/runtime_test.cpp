@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robot at run time against the estimator's own model, statics and hand values.
+// Compares the robot at run time with the estimator's model, with statics and with hand values.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -64,7 +64,7 @@ TEST_F(Runtime, DeflectsAsTheEstimatorsModelDoes) {
       EXPECT_LT(Distance(robot.link_pose(static_cast<int>(i)), expected[i]), kRounding);
       largest = std::max(largest, Distance(robot.link_pose(static_cast<int>(i)), rigid[i]));
     }
-    EXPECT_GT(largest, 3e-4);  // there was something to deflect
+    EXPECT_GT(largest, 3e-4);  // some deflection was to be expected
   }
 }
 
@@ -116,14 +116,14 @@ TEST_F(Runtime, LegsGiveWayAsEquation6Says) {
         DeflectWaist(posture.T_foot_waist, geometry_.leg_compliance[static_cast<std::size_t>(leg)],
                      load)
             .T_foot_waist;
-    // The load is that of the posture before the last deflection, which moved by some 1e-3 of it.
+    // The load is that of the posture before the last deflection, which changes it by some 1e-3.
     EXPECT_LT(Distance(robot.root_pose(), expected), 2e-6);
     EXPECT_GT(Distance(robot.root_pose(), posture.T_foot_waist), 1e-4);
   }
 }
 
 TEST_F(Runtime, TwoFeetCarryWhatInverseDynamicsSays) {
-  // Rigid, so that the posture is the same for both.
+  // The robot is rigid, so that both have the same posture.
   Compensator robot = Make(RuntimeContent::kNominal);
   Eigen::VectorXd q = project_.motion.rest;
   robot.Forward(q, kNoTorque, 3);
@@ -148,7 +148,7 @@ TEST_F(Runtime, TwoFeetCarryWhatInverseDynamicsSays) {
   state.velocity = state.acceleration = Eigen::VectorXd::Zero(q.size());
   const Eigen::VectorXd torques =
       InverseDynamics(project_.tree, inertias, state, kGravity, wrenches).torques;
-  // Loads of the model are in memory of a Forward: the torque about the axis is their opposite.
+  // The loads are those of the last Forward. The torque about the axis is their opposite.
   RuntimeModel model = MakeRuntimeModel(project_, stored_, RuntimeContent::kNominal);
   for (ec_joint& joint : model.calibrated) joint.compliance[2] = joint.prismatic ? 0.0 : 1e-9;
   Compensator loaded(std::move(model));
@@ -175,7 +175,7 @@ TEST_F(Runtime, CommandPutsTheRealRobotWhereTheNominalOneIs) {
         const std::vector<Leg> legs = Legs();
         Eigen::Isometry3d got = robot.link_pose(chain.tip_link);
         for (std::size_t i = 0; i < legs.size(); ++i) {
-          // With one foot on the floor, that leg's own compliance counts.
+          // With one foot on the floor, the compliance of that leg as a whole counts.
           if (feet == 1u << i && legs[i].foot_link == chain.tip_link) {
             got = robot.root_pose().inverse();
           }
@@ -185,13 +185,13 @@ TEST_F(Runtime, CommandPutsTheRealRobotWhereTheNominalOneIs) {
       return distance;
     };
     EXPECT_GT(largest(q), 3e-3) << feet;
-    // Of two feet, link_pose is without the leg's lumped compliance.
+    // With two feet, link_pose does not contain the leg's lumped compliance.
     EXPECT_LT(largest(command), feet == 3 ? 2e-3 : 1e-4) << feet;
   }
 }
 
-// Under commands feet and root link are where the plan has them. A nominal robot at the positions
-// of the commands has its feet, and so the root link on them, elsewhere.
+// With commands, feet and root link are where the plan has them. A nominal robot at the commanded
+// positions has its feet elsewhere, and so the root link on them.
 TEST_F(Runtime, OnTwoFeetTheRootIsWhereTheCommandsPutIt) {
   Compensator robot = Make();
   const Eigen::VectorXd q = project_.motion.rest;
@@ -218,7 +218,7 @@ TEST_F(Runtime, CorrectGivesARigidRobotThePlacesOfTheElasticOne) {
     const Vector6d displacement = robot.root_displacement();
     robot.Forward(q, kNoTorque, feet);
     rigid.Forward(positions, kNoTorque, feet);
-    // What a Gauss-Newton step leaves, see EC_SMALL_STEP.
+    // The tolerance is what a Gauss-Newton step leaves, see EC_SMALL_STEP.
     EXPECT_LT((robot.root_pose().matrix() - rigid.root_pose().matrix()).cwiseAbs().maxCoeff(),
               2e-6);
     rigid.Forward(q, kNoTorque, feet);
@@ -243,7 +243,7 @@ TEST_F(Runtime, MeasuredTorquesTakeThePlaceOfStatics) {
   torque[static_cast<Eigen::Index>(k)] = 8.0;
   robot.Correct(q, torque, 0);
   const double compliance = geometry_.joints[k].compliance.z();
-  // The torque balances the load: one N.m more turns the joint back.
+  // The torque balances the load, so 1 N.m more turns the joint back.
   EXPECT_NEAR((robot.rigid_positions() - with)[project_.tree.joints[k].coordinate], -compliance,
               1e-3 * compliance);
 }
@@ -272,7 +272,7 @@ TEST_F(Runtime, BadInputKeepsTheLastGoodOne) {
   EXPECT_EQ(robot.Command(q, torque, 1), unsigned{EC_BAD_TORQUE});
   EXPECT_EQ(robot.command(), with_torque);
 
-  // Garbage that is finite, whose products are not.
+  // The garbage is finite, but its products are not.
   Eigen::VectorXd garbage = q;
   garbage[3] = 1e300;
   EXPECT_EQ(robot.Command(garbage, torque.setOnes(), 1), unsigned{EC_BAD_POSITION});
@@ -315,13 +315,13 @@ TEST_F(Runtime, LowPassFollowsATorqueWithItsTimeConstant) {
 }
 
 TEST(RuntimeByHand, OneSpringTurnsByMomentTimesCompliance) {
-  // A bar of 1 m and 2 kg along x that turns about y: gravity pulls its end (com at 0.5 m) down
+  // A bar of 1 m and 2 kg along x turns about y. Gravity pulls its centre of mass at 0.5 m down,
   // with 2 * 9.81 * 0.5 N.m about +y.
   RuntimeModel model;
   model.joint_names = model.coordinate_names = {"hinge"};
   ec_joint joint{};
   joint.multiplier = 1.0;
-  // Twisted frame with z along y: x stays, y is -z.
+  // In the twisted frame with z along y, x stays and y becomes -z.
   const double R[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0};
   const double back[9] = {1, 0, 0, 0, 0, -1, 0, 1, 0};
   for (int i = 0; i < 9; ++i) {
@@ -347,7 +347,7 @@ TEST(RuntimeByHand, OneSpringTurnsByMomentTimesCompliance) {
   EXPECT_NEAR(robot.rigid_positions()[0], turn, 1e-3 * turn * turn);
   robot.Forward(Eigen::VectorXd::Zero(1), kNoTorque, 0);
   EXPECT_NEAR(robot.link_pose(0).translation().z(), -std::sin(turn), 1e-9);
-  // Without load there is no deflection: the torque sensor says 0.
+  // If the torque sensor shows 0, there is no load and no deflection.
   robot.Forward(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1), 0);
   EXPECT_NEAR(robot.link_pose(0).translation().z(), 0.0, 1e-15);
 }

@@ -6,7 +6,7 @@
 
 namespace elastocal {
 
-/// An empty folder for one test, removed with everything in it at the end.
+/// An empty folder for one test. It is removed with its contents at the end.
 class ScratchFolder {
  public:
   ScratchFolder();

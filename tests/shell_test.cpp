@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is made of the command line's definitions: version, manual page, completion of shells.
+// Products of the command line's definitions: version, manual page, and completion of shells.
 
 #include <array>
 #include <cstdio>
@@ -21,7 +21,7 @@ const std::vector<std::string> kCommands = {"inspect",  "calibrate", "validate",
 
 std::string Generated(const std::string& file) { return ReadFile(GeneratedFile(file)); }
 
-/// All long options that the help of a command shows.
+/// All long options in the help of a command.
 std::vector<std::string> HelpOptions(const std::string& command) {
   const std::string help = RunProgram(command + " --help").out;
   const std::regex option("^  (?:-[a-z],)?(--[a-z0-9-]+)");
@@ -34,7 +34,7 @@ std::vector<std::string> HelpOptions(const std::string& command) {
   return options;
 }
 
-/// What a shell command prints on both streams, and whether it ended well.
+/// Output of a shell command on both streams, and whether it succeeded.
 std::pair<std::string, bool> Shell(const std::string& command) {
   std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   std::string text;
@@ -47,7 +47,7 @@ std::pair<std::string, bool> Shell(const std::string& command) {
 
 bool IsInstalled(const std::string& program) { return Shell("command -v " + program).second; }
 
-/// What bash offers after these words, the last of them unfinished; `here`: current folder.
+/// The completions that bash offers for the last of these words, in the folder `here`.
 std::string Completed(const std::string& words, const std::string& here = ".") {
   const ScratchFolder scratch;
   const std::string script =
@@ -63,7 +63,8 @@ TEST(Shell, VersionTellsTheCommit) {
   EXPECT_EQ(version.exit_code, 0);
   const std::regex form(R"(elastocal \d+\.\d+\.\d+ \((unknown|[\w.-]+\+?)\)\n)");
   EXPECT_TRUE(std::regex_match(version.out, form)) << version.out;
-  // A clone of somebody else is none for git, and so is a released source.
+  // For git, a clone that belongs to another user is no repository, and neither is a released
+  // source.
   if (!Shell("git -C '" + SourceFile(".").string() + "' rev-parse HEAD").second) {
     GTEST_SKIP() << "not in a repository";
   }
@@ -105,7 +106,7 @@ TEST(Shell, BashCompletes) {
   EXPECT_EQ(Completed("elastocal calibrate p.yaml --zero-offsets ''"), "origin encoder\n");
   EXPECT_EQ(Completed("elastocal calibrate --zero-offsets = en"), "encoder\n");
   EXPECT_EQ(Completed("elastocal design p.yaml --algorithm co"), "cocp\n");
-  EXPECT_EQ(Completed("elastocal calibrate --kfold ''"), "\n");  // a number
+  EXPECT_EQ(Completed("elastocal calibrate --kfold ''"), "\n");  // a number has no completions
 }
 
 TEST(Shell, BashCompletesFiles) {

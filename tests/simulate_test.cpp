@@ -98,7 +98,7 @@ TEST_F(Simulate, PlaysAUsersPosturesAndTrajectory) {
   EXPECT_EQ(followed.trials[0].kind, TrialKind::kRandom);
   EXPECT_EQ(followed.trials[0].chains, std::vector<int>{1});
   const auto json = nlohmann::json::parse(ReadFile(Folder("m.json")));
-  EXPECT_EQ(json["trials"][0]["frames"], 1150);  // 5 s at rest, 5 s, 1.5 s at rest
+  EXPECT_EQ(json["trials"][0]["frames"], 1150);  // 5 s of rest, 5 s of motion, 1.5 s of rest
 }
 
 TEST_F(Simulate, DoesNotReplaceTheMotionThatItPlays) {
@@ -110,7 +110,7 @@ TEST_F(Simulate, DoesNotReplaceTheMotionThatItPlays) {
   EXPECT_EQ(ReadFile(motion), "turret_joint\n0\n0.3\n");
 }
 
-// A laboratory's recording, named as the simulation names its own.
+// A laboratory's recording whose files have the names of the simulation's.
 TEST_F(Simulate, DoesNotReplaceRecordingsThatItDidNotMake) {
   ASSERT_EQ(Run("lab", "--quiet --trials upper_random").exit_code, 0);
   std::filesystem::remove(Folder("lab/truth.yaml"));
@@ -122,7 +122,7 @@ TEST_F(Simulate, DoesNotReplaceRecordingsThatItDidNotMake) {
   EXPECT_NE(refused.err.find("--force"), std::string::npos) << refused.err;
   EXPECT_EQ(ReadFile(Folder("lab/experiment.yaml")), experiment);
   EXPECT_EQ(ReadFile(Folder("lab/upper_random.tsv")), markers);
-  // One file of the name of a trial is enough.
+  // A single file with the name of a trial is enough.
   std::filesystem::create_directory(Folder("other"));
   const std::string alone = scratch_.Write("other/upper_random.tsv", "the laboratory's");
   EXPECT_EQ(Run("other", "--trials upper_random").exit_code, 3);
@@ -143,7 +143,7 @@ TEST_F(Simulate, ReplacesAnEarlierSimulationAsAWhole) {
   EXPECT_EQ(names,
             (std::set<std::string>{"experiment.yaml", "notes.txt", "truth.yaml", "upper_random.csv",
                                    "upper_random.tsv", "upper_random_waist.csv"}));
-  // What the earlier simulation did not write is not replaced either.
+  // Files that the earlier simulation did not write are not replaced either.
   const std::string other = scratch_.Write("one/arm.csv", "mine");
   const ProgramResult result = Run("one", "--trials arm");
   EXPECT_EQ(result.exit_code, 3);
@@ -164,7 +164,7 @@ TEST_F(Simulate, NamesOfTrialsAreNoPathsAndNotThoseOfMotions) {
   EXPECT_EQ(TrialNameOf("_motion.csv"), "_motion");
   EXPECT_EQ(TrialNameOf("my motion: \xc3\xa4.csv"), "my_motion____");
   EXPECT_EQ(TrialNameOf("...csv"), "_..");
-  // A motion of plan --per-chain can be played into the folder where it lies.
+  // A motion of `plan --per-chain` can be played into its own folder.
   std::filesystem::create_directory(Folder("here"));
   const std::string motion =
       scratch_.Write("here/arm_motion.csv", "time,turret_joint,support\n0,0,none\n2,0.3,none\n");
@@ -173,7 +173,7 @@ TEST_F(Simulate, NamesOfTrialsAreNoPathsAndNotThoseOfMotions) {
   EXPECT_TRUE(std::filesystem::exists(Folder("here/arm.tsv")));
 }
 
-// What is left is the micrometre to which marker files are written.
+// The remaining error is the micrometre to which marker files are rounded.
 TEST_F(Simulate, AMatchedTruthIsWhatCalibrateFinds) {
   const std::string project = SourceFile("tests/robots/arm6_project.yaml").string();
   const ProgramResult simulated =

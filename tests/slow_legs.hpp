@@ -11,9 +11,10 @@
 
 namespace elastocal {
 
-/// A humanoid on one leg, then the other: 16 rests each, and then slowly from rest to rest, which
-/// is recorded ten times on each way. What the model does not know displaces and turns all but the
-/// standing foot: anew for each rest, a first-order process in time along the ways.
+/// A humanoid on one leg, then on the other. On each, it has 16 rests, and then moves slowly from
+/// rest to rest, with ten moments recorded on each way. Model errors displace and turn all but the
+/// standing foot. They are drawn for each rest, and are a first-order process in time along the
+/// ways.
 struct SlowLegs {
   StandingHumanoid robot{16};
   Eigen::VectorXd truth = robot.DrawTruth(3);
@@ -59,11 +60,12 @@ struct SlowLegs {
 
   static constexpr double kTied = 0.3e-3;  // m, rad
   static constexpr double kRate = 10.0;    // Hz
-  static constexpr double kKept = 0.95;    // of the error, from one moment to the next
+  static constexpr double kKept = 0.95;    // of the error between successive moments
 };
 
-/// Only the ways of both legs. Each body but the standing foot is displaced by a model error (m)
-/// that hardly changes in a second; the cluster of the left shank also by `push`, from a moment on.
+/// Records only the ways, of both legs. A model error (m) that hardly changes in a second displaces
+/// each body but the standing foot. From some moment on, `push` displaces the cluster of the left
+/// shank.
 inline Recording RecordWays(const SlowLegs& legs, double of_body, const Eigen::Vector3d& push,
                             std::uint64_t seed) {
   constexpr double kKept = 0.99;

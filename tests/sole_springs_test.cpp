@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The spring between the markers of a foot and the floor, of robots that MuJoCo plays.
+// The spring between the markers of a foot and the floor, for robots that MuJoCo plays.
 #include "elastocal/calibration/sole_springs.hpp"
 
 #include <cmath>
@@ -18,13 +18,13 @@
 namespace elastocal {
 namespace {
 
-/// The biped bends its trunk on both feet, on the right one, on the left one and on both again.
+/// The biped bends its trunk on both feet, on the right one, on the left one, and on both again.
 class PlayedSoles : public testing::Test {
  protected:
   JointMotion Programme() const {
     const int left = robot_.left, right = robot_.right;
     const std::vector<std::vector<int>> stances = {{left, right}, {right}, {left}, {left, right}};
-    constexpr int kEach = 6;  // samples of a stance, 0.5 s apart
+    constexpr int kEach = 6;  // samples of each stance, 0.5 s apart
     JointMotion motion;
     motion.source = "programme";
     motion.q.setZero(4 * kEach, robot_.biped.tree.coordinate_count());
@@ -45,7 +45,7 @@ class PlayedSoles : public testing::Test {
     return robot_.biped.tree.joints[FindJoint(robot_.biped.tree, joint)].coordinate;
   }
 
-  /// What cameras and log recorded of a robot, every fifth frame, all of it stays or none.
+  /// Records every fifth frame of a robot by cameras and log, whether it moves or not.
   Recording Record(const VirtualExperiment& experiment) const {
     std::vector<Trial> trials;
     std::vector<Eigen::RowVectorXd> q, markers, torques;
@@ -119,7 +119,7 @@ TEST_F(PlayedSoles, AreWithinTheirIntervals) {
     }
   }
   EXPECT_EQ(told, 2 * kRobots);
-  // Of eight numbers, 99.9 % of mean squares are below 3.3.
+  // The mean square of eight numbers is below 3.3 with a probability of 99.9 %.
   EXPECT_LT(normalised / (2 * kRobots), 3.3);
 }
 
@@ -144,8 +144,8 @@ TEST_F(PlayedSoles, WrongTorquesTellNothing) {
   lighter.torques *= 0.6;
   for (const SoleSpring& sole : Estimate(lighter)) EXPECT_TRUE(std::isinf(sole.sd)) << sole.leg;
 
-  // Mistakes are undone (--accept), and sensors that contradict statics hidden, after the recording
-  // is read: the weight is shared by what is left.
+  // After the recording is read, mistakes are corrected (--accept) and sensors that contradict
+  // statics are hidden. The remaining torques give the shares of the weight.
   Measurements measured;
   measured.calibration = recording;
   measured.foot_rests = FindFootRests(robot_.biped.tree, robot_.biped.markers, recording);

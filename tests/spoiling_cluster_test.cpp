@@ -19,7 +19,7 @@ namespace {
 
 class SpoilingCluster : public FaultyArm {
  protected:
-  /// Along z, over the recording.
+  /// Moves a cluster along z during the recording.
   void Slip(const std::string& cluster, double by) {
     for (int m = 0; m < recorded_.marker_count(); ++m) {
       if (!recorded_.marker_names[Size(m)].starts_with(cluster)) continue;
@@ -33,8 +33,8 @@ class SpoilingCluster : public FaultyArm {
   }
 };
 
-// Above half a millimetre and below ten times what others are off by: what counts is that it spoils
-// what the others tell.
+// The slip is more than half a millimetre and less than ten times the errors of the others. The
+// cluster is refused because it spoils their estimates.
 TEST_F(SpoilingCluster, ThatSlipsSlowlyIsRefused) {
   Slip("TOOL", 8e-3);
   Measurements measured;
@@ -52,7 +52,8 @@ TEST_F(SpoilingCluster, ThatSlipsSlowlyIsRefused) {
   ExpectIn(said[0], "Without cluster TOOL the error of all other markers falls");
 }
 
-// It is elsewhere in each posture, and counts the less: the others tell what they told before.
+// The loose cluster has another place in each posture and so has little weight. The estimates by
+// the others stay the same.
 TEST_F(SpoilingCluster, ThatIsLooseAndSpoilsNothingIsKept) {
   Random random(7);
   for (int i = 0; i < recorded_.posture_count(); ++i) {

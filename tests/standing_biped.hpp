@@ -10,14 +10,14 @@
 
 namespace elastocal {
 
-/// The biped with both legs elastic, and recordings of it made by hand.
+/// The biped with both legs elastic, and empty recordings for tests to fill in.
 struct StandingBiped {
   Biped biped = MakeBiped();
   int left = FindLink(biped.tree, "left_sole"), right = FindLink(biped.tree, "right_sole");
   ErrorModel model =
       MakeErrorModel(biped.tree, biped.markers, {}, {.legs = {{"left", left}, {"right", right}}});
 
-  /// `postures` of each trial, in all of which every marker is at the origin.
+  /// A recording with `postures` postures for each trial and all markers at the origin.
   Recording Empty(std::vector<Trial> trials, int postures) const {
     Recording recording;
     recording.trials = std::move(trials);
@@ -31,7 +31,7 @@ struct StandingBiped {
     return recording;
   }
 
-  /// Hides all markers in the posture but those of the given clusters ("WAIST").
+  /// Hides all markers in a posture except those of the given clusters ("WAIST").
   void ShowOnly(const std::vector<std::string>& clusters, int posture, Recording& recording) const {
     for (int m = 0; m < model.marker_count(); ++m) {
       bool shown = false;

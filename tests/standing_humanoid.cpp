@@ -17,7 +17,7 @@ int FindLinkIndex(const RobotTree& tree, const std::string& name) {
   throw std::runtime_error("no link " + name);
 }
 
-/// Yaw, roll, pitch, knee, ankle pitch, ankle roll.
+/// Sets a leg to yaw, roll, pitch, knee, ankle pitch and ankle roll.
 void SetLeg(const RobotTree& tree, const std::string& side, const std::vector<double>& values,
             Eigen::VectorXd& q) {
   for (const Joint& joint : tree.joints) {

@@ -10,22 +10,23 @@
 
 namespace elastocal {
 
-/// The embedded humanoid as it is calibrated whole: head, trunk and arms on both feet, each leg
-/// while the other one carries.
+/// The embedded humanoid in the trials of a whole calibration: head, trunk and arms on both feet,
+/// and each leg while the robot stands on the other one.
 struct StandingHumanoid {
   Project project;
   ErrorModel model;  ///< torsion of the trunk and the arms, both legs elastic
   BaseParameters base;
   std::vector<PlayedTrial> trials;
 
-  /// The robot with `postures` a trial: head and trunk, left and right arm, left and right leg.
+  /// The robot with `postures` postures in each trial: head and trunk, both arms, both legs.
   explicit StandingHumanoid(int postures, std::uint64_t seed = 1, bool torque_bias = false);
 
-  /// Errors of usual size for all identifiable parameters; compliances as the paper found.
+  /// Draws errors of usual size for all identifiable parameters. Compliances are as the paper
+  /// found.
   Eigen::VectorXd DrawTruth(std::uint64_t seed) const;
 
-  /// What cameras and robot record; each trial sees the waist, the chain that it moves and the foot
-  /// that it stands on.
+  /// Simulates what cameras and robot record. Each trial shows the waist, the chain that it moves
+  /// and the foot that stands.
   Recording Record(const Eigen::VectorXd& truth, const StandingOptions& options) const;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The embedded humanoid (models/talos) against the published description of the robot.
+// Compares the embedded humanoid (models/talos) with the published description of the robot.
 #include <filesystem>
 #include <map>
 #include <string>
@@ -26,7 +26,7 @@ TEST(TalosModel, HoldsThePapersSetUp) {
   EXPECT_EQ(project.reference_cluster, "WAIST");
   EXPECT_EQ(project.torque_sensors.size(), 24u);
 
-  // Markers of the chains whose numbers of parameters the paper gives: N_M in 4 R + 3 N_M.
+  // Number of markers N_M of the chains for which the paper gives 4 R + 3 N_M parameters.
   const std::map<std::string, std::size_t> expected{
       {"head_trunk", 6}, {"leg_left", 9},        {"leg_right", 9},       {"arm_left", 18},
       {"arm_right", 18}, {"torso_arm_left", 21}, {"torso_arm_right", 21}};
@@ -46,7 +46,7 @@ class TalosAgainstPublished : public testing::Test {
     published_ = ReadUrdf(file);
   }
 
-  /// The same posture of the published robot, fingers at zero.
+  /// The same posture of the published robot, with its fingers at zero.
   Eigen::VectorXd PublishedPosture(const Eigen::VectorXd& q) const {
     Eigen::VectorXd published_q = Eigen::VectorXd::Zero(published_.coordinate_count());
     for (const Joint& joint : talos_.joints) {
@@ -65,8 +65,9 @@ class TalosAgainstPublished : public testing::Test {
 };
 
 TEST_F(TalosAgainstPublished, Kinematics) {
-  // The same numbers in another order of operations: 1e-9 m and rad are a million roundings. The
-  // links are those of all 30 joints, both soles, both grippers and the inertial sensor.
+  // The numbers are the same in another order of operations. 1e-9 m and rad are a million
+  // roundings. The links are those of all 30 joints, both soles, both grippers and the inertial
+  // sensor.
   for (int i = 0; i < 1000; ++i) {
     const Eigen::VectorXd q = RandomPosture(talos_, random_);
     const std::vector<Transform> T_root_link = LinkTransforms(talos_, q);
@@ -91,7 +92,7 @@ TEST_F(TalosAgainstPublished, Limits) {
 }
 
 TEST_F(TalosAgainstPublished, MassAndGravityTorques) {
-  // Lumped masses and their centres are written with 12 digits: 1e-10 of some 100 N.m.
+  // Lumped masses and their centres have 12 digits, which is 1e-10 of some 100 N.m.
   EXPECT_NEAR(TotalMass(talos_), TotalMass(published_), 1e-6);
   for (int i = 0; i < 1000; ++i) {
     const Eigen::VectorXd q = RandomPosture(talos_, random_);

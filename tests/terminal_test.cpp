@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program on a terminal: standard output, messages and progress share one screen.
+// The program on a terminal, where standard output, messages and progress share one screen.
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kErase = "\r\033[K";
 
-/// All that the program writes to a terminal of 100 columns that stands for both of its streams.
+/// All that the program writes to a terminal of 100 columns, on both of its streams.
 std::string RunOnTerminal(const std::string& arguments) {
   winsize size{};
   size.ws_col = 100;
@@ -40,7 +40,7 @@ std::string RunOnTerminal(const std::string& arguments) {
   return text;
 }
 
-/// What stands on the screen in the end: an erased line is gone, and a line ends with a line feed.
+/// The final screen: erased lines are removed, and each line ends with a line feed.
 std::vector<std::string> Screen(std::string text) {
   for (std::size_t at = 0; (at = text.find(kErase)) != std::string::npos;) {
     const std::size_t begin = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
@@ -59,14 +59,15 @@ std::vector<std::string> Screen(std::string text) {
 TEST_F(Program, ShowsProgressAndTakesItAway) {
   const std::string text = RunOnTerminal("calibrate " + project_ + " --recording " + recording_ +
                                          " --kfold 5 -o " + out_);
-  // Three models in five folds.
+  // There are three models in five folds.
   EXPECT_NE(text.find(kErase + std::string("cross-validation 1/5")), std::string::npos) << text;
   for (const std::string& line : Screen(text)) {
     EXPECT_EQ(line.find("cross-validation 1"), std::string::npos) << line;
   }
 }
 
-// One screen: the verdict first, at most 45 lines of 100 columns, all else with --verbose.
+// One screen begins with the verdict and has at most 45 lines of 100 columns. --verbose shows the
+// rest.
 TEST_F(Program, CalibratePrintsOneScreen) {
   const std::string run =
       "calibrate " + project_ + " --recording " + recording_ + " --kfold 5 -o " + out_;
@@ -84,7 +85,7 @@ TEST_F(Program, CalibratePrintsOneScreen) {
   EXPECT_EQ(RunProgram(run).out.find("Strong correlations"), std::string::npos);
 }
 
-// Messages stand at the beginning of lines, below what was printed before.
+// Messages begin on new lines, below the earlier output.
 TEST_F(Program, MessagesFollowWhatWasPrinted) {
   std::string table = ReadFile(recording_);
   table.replace(table.find("elbow_joint"), 11, "elbow_jXint");

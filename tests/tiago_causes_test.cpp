@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A real TIAGo on two days: what the first one says of the second.
+// A real TIAGo on two days: what the first day predicts for the second.
 
 #include <algorithm>
 #include <filesystem>
@@ -24,7 +24,7 @@
 namespace elastocal {
 namespace {
 
-// The estimate goes through the file, and a validation uses it.
+// The estimate passes through a file, which a validation reads.
 class TiagoCauses : public testing::Test {
  protected:
   void SetUp() override {
@@ -35,7 +35,7 @@ class TiagoCauses : public testing::Test {
                              "}\n" + kTiago + "calibration: {extra: " + extra + "}\n";
     return ParseProject(text, SourceFile("project.yaml"));
   }
-  /// The errors on the other day, nothing fitted.
+  /// The errors on the other day without any fit.
   static ErrorMetrics OnAnotherDay(const Project& project, CalibrationRun& run) {
     const ScratchFolder scratch;
     const std::string file = scratch.Write(
@@ -44,7 +44,7 @@ class TiagoCauses : public testing::Test {
         project, file, SharedFile("data/tiago_mocap/validation.csv"), {.frozen = true, .seed = {}});
     return validated.transfer.calibrated.metrics_all;
   }
-  /// That of marker 1, m.
+  /// The error of marker 1, m.
   double Validate(const std::string& extra, std::vector<std::string>& chosen) const {
     const Project project = ProjectWith(extra);
     CalibrationRun run = CalibrateExperiment(project, {training_}, {.folds = 0});
@@ -79,7 +79,7 @@ TEST_F(TiagoCauses, HysteresisOfTheWristAndTwistOfTheColumnHelpOnAnotherDay) {
   EXPECT_LT(with, 2.1e-3);
 }
 
-// By the defaults, everything being decided anew in each fold, causes too.
+// By default, everything is decided anew in each fold, including the causes.
 TEST_F(TiagoCauses, TenFoldsForetellTheErrorOfAnotherDay) {
   const Project project = ProjectWith("auto");
   CalibrationRun run = CalibrateExperiment(project, {training_}, {.threads = 2});
@@ -87,10 +87,10 @@ TEST_F(TiagoCauses, TenFoldsForetellTheErrorOfAnotherDay) {
   const double foretold = run.cross_validation.metrics[static_cast<int>(ModelKind::kFull)].rmse_3d;
   const double found = OnAnotherDay(project, run).rmse_3d;
   EXPECT_NEAR(foretold, found, 0.15 * found);
-  // docs/accuracy.md. By causes that all postures chose, 1.982 mm would be foretold: 24 % too
-  // little.
+  // The figure is that of docs/accuracy.md. Causes chosen by all postures would foretell 1.982 mm,
+  // 24 % too little.
   EXPECT_NEAR(foretold, 2.593e-3, 5e-5);
-  // The twist of the column is drawn against the position of a slide.
+  // The twist of the column is plotted against the position of a sliding joint.
   const nlohmann::ordered_json pictures = CausePicturesJson(*run.causes);
   const auto twist = std::ranges::find_if(pictures, [](const auto& picture) {
     return picture["name"] == "arm_1_joint.coupling_torso_lift_joint";
@@ -101,8 +101,8 @@ TEST_F(TiagoCauses, TenFoldsForetellTheErrorOfAnotherDay) {
             std::string::npos);
 }
 
-// Ten postures, with all joints open, do not tell how far the model errs from one to the next: the
-// first day's many do. By all rows, what seems to have changed is within the play of the joint.
+// Ten postures with all joints free do not tell the scatter of the model's error. The many postures
+// of the first day do. With all rows, the apparent change is within the play of the joint.
 TEST_F(TiagoCauses, CheckKnowsTheScatterAndThePlayOfTheFirstDay) {
   const ScratchFolder scratch;
   const Project project = ProjectWith("auto");
@@ -111,7 +111,7 @@ TEST_F(TiagoCauses, CheckKnowsTheScatterAndThePlayOfTheFirstDay) {
   const std::filesystem::path all = SharedFile("data/tiago_mocap/validation.csv");
   std::istringstream file(ReadFile(all));
   std::string part, line;
-  for (int row = 0; std::getline(file, line); ++row) {  // rows 51 to 60, and the header
+  for (int row = 0; std::getline(file, line); ++row) {  // the header, and rows 51 to 60
     if (row == 0 || (row > 50 && row <= 60)) part += line + "\n";
   }
   const CheckOptions options{.days = 4.0};
@@ -126,7 +126,7 @@ TEST_F(TiagoCauses, CheckKnowsTheScatterAndThePlayOfTheFirstDay) {
   }));
 }
 
-// Nothing moved between the two days, though the second alone chooses a moment of the wrist.
+// Nothing moved between the two days, but the second day alone chooses a moment of the wrist.
 TEST_F(TiagoCauses, CompareAccusesNoJoint) {
   const ScratchFolder scratch;
   std::vector<std::vector<std::string>> chosen;

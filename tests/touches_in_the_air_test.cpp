@@ -14,7 +14,7 @@ namespace {
 
 const Eigen::Vector3d kNoiseOfTouches(0.5e-3, 1e-3, 1e-3);  // m, rad
 
-/// Heights over the table of 40 touches of which one in `every` is in the air, 5 to 40 mm.
+/// Heights over the table of 40 touches. One in `every` is 5 to 40 mm in the air.
 std::vector<double> OneInAir(int every, Random& random) {
   std::vector<double> above(40, 0.0);
   for (std::size_t i = 0; i < above.size(); i += static_cast<std::size_t>(every)) {
@@ -38,7 +38,7 @@ TEST(TouchesInTheAir, AreFoundEach) {
     }
     for (const TouchInTheAir& one : found) {
       of_found.push_back(one.observation);
-      // Some mm: what 26 touches of a robot with 50 unknowns predict of others.
+      // 26 touches of a robot with 50 unknowns predict others to some mm.
       EXPECT_NEAR(one.height, above[static_cast<std::size_t>(one.observation)], 5e-3);
     }
     EXPECT_EQ(of_found, expected);
@@ -46,14 +46,14 @@ TEST(TouchesInTheAir, AreFoundEach) {
   }
 }
 
-// A few are left out with a warning; many of one plate are an objection, however few they are of
-// all.
+// A few touches are left out with a warning. Many of one plate are an objection, even if they are
+// few among all.
 TEST(TouchesInTheAir, AreLeftOutOrObjectedTo) {
   ContactRun few;
   few.model = MakeTouchingBiped();
   Random random(31);
   const ObservedValues truth = RandomTruth(few.model, 1, random);
-  std::vector<double> above(20, 0.0);  // the plates take turns
+  std::vector<double> above(20, 0.0);  // the plates alternate
   above[4] = above[9] = 0.02;
   few.observations = SimulateTouches(few.model, truth, 40, 1, kNoiseOfTouches, random, above);
   EXPECT_TRUE(LeaveOutTouchesInTheAir(few));
@@ -86,12 +86,12 @@ TEST(ObservedMistakes, APlateUpsideDownIsNamed) {
             "expected");
 }
 
-// Of two tables of one plate, tens of millimetres apart, the nominal robot tells.
+// The nominal robot tells two tables of one plate apart if they differ by tens of millimetres.
 TEST(ObservedMistakes, TwoTablesOfOnePlateAreNamed) {
   const ObservedRobot model = MakeTouchingBiped();
   Random random(5);
   const ObservedValues truth = RandomTruth(model, 1, random);
-  std::vector<double> above(40, 0.0);  // the plates take turns
+  std::vector<double> above(40, 0.0);  // the plates alternate
   for (std::size_t i = 20; i < 40; i += 2) above[i] = 0.15;
   const Observations two = SimulateTouches(model, truth, 40, 1, kNoiseOfTouches, random, above);
   const std::vector<std::string> found = FindObservedMistakes(model, two);
@@ -103,7 +103,7 @@ TEST(ObservedMistakes, TwoTablesOfOnePlateAreNamed) {
   EXPECT_TRUE(FindTwoTables(model, one).empty());
 }
 
-// Noise that is larger, or that the geometry leaves because joints give way, lies on both sides.
+// Larger noise, or errors of geometry because joints give way, have both signs.
 TEST(TouchesInTheAir, AreNoneWhereAllAreOnTheTable) {
   const ObservedRobot model = MakeTouchingBiped();
   for (const double height : {3e-3, 10e-3}) {

@@ -9,7 +9,7 @@
 
 namespace elastocal {
 
-/// Adds an arm of five joints on the side of y = `side` to a trunk and returns its hand.
+/// Adds an arm of five joints to a trunk, on the side of y = `side`. Returns its hand.
 inline int AddArm(RobotTree& tree, const std::string& name, int trunk, double side) {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
@@ -26,7 +26,7 @@ inline int AddArm(RobotTree& tree, const std::string& name, int trunk, double si
   return link;
 }
 
-/// The biped with two arms, each with a plate under its hand, on both feet.
+/// The biped on both feet with two arms, each of which has a plate under its hand.
 inline ObservationSetup TouchingSetup(RobotTree& tree) {
   tree = MakeBiped().tree;
   const int trunk = FindLink(tree, "trunk_pitch_link");
@@ -41,7 +41,7 @@ inline ObservationSetup TouchingSetup(RobotTree& tree) {
   return setup;
 }
 
-/// Its model with some joints that give way (a root that is held still: one of them). `hold`:
+/// The biped's model with some joints that give way (for a held root: only one of them). `hold`:
 /// patterns of parameters.
 inline ObservedRobot MakeTouchingBiped(const RobotTree& tree, ObservationSetup setup,
                                        const std::vector<std::string>& hold = {}) {
@@ -61,7 +61,7 @@ inline ObservedRobot MakeTouchingBiped(const std::vector<std::string>& hold = {}
   return MakeTouchingBiped(tree, setup, hold);
 }
 
-/// A posture with bent knees, hands in front.
+/// A posture with bent knees and with the hands in front.
 inline Eigen::VectorXd TouchingPosture(const ObservedRobot& model, Random& random) {
   const RobotTree& tree = model.robot.tree;
   Eigen::VectorXd q = random.NormalVector(tree.coordinate_count(), 0.15);
@@ -83,10 +83,10 @@ inline Eigen::VectorXd TouchingPosture(const ObservedRobot& model, Random& rando
   return q;
 }
 
-/// Touches of a robot with the errors `truth`: random postures in which the last three joints of
-/// the arm that touches, found by Newton's method, leave what `noise` draws (height, tilts). The
-/// plates take turns, and each plate has `sessions` sessions in turn. `above`: how high over the
-/// table each of the first touches is besides, m.
+/// Touches of a robot with the errors `truth`, in random postures. Newton's method moves three
+/// joints of the touching arm until the plate has the height and tilts that `noise` draws. The
+/// plates alternate, and so do the `sessions` sessions of each plate. `above`: additional heights
+/// of the first touches over the table, m.
 inline Observations SimulateTouches(const ObservedRobot& model, const ObservedValues& truth,
                                     int count, int sessions, const Eigen::Vector3d& noise,
                                     Random& random, const std::vector<double>& above = {}) {
@@ -110,7 +110,7 @@ inline Observations SimulateTouches(const ObservedRobot& model, const ObservedVa
       return Eigen::Vector3d(LeftOf(model, of, truth)[0] - wanted);
     };
     Eigen::Vector3d left = left_of(one);
-    constexpr std::size_t kFromHand[] = {1, 2, 4};  // wrist and shoulder
+    constexpr std::size_t kFromHand[] = {1, 2, 4};  // from the hand: wrist and shoulder
     for (int step = 0; step < 20 && left.norm() > 1e-14; ++step) {
       Eigen::Matrix3d J;
       for (int k = 0; k < 3; ++k) {
@@ -135,8 +135,8 @@ inline Observations SimulateTouches(const ObservedRobot& model, const ObservedVa
   return touches;
 }
 
-/// Truth of the invented robot: errors and quantities of the sizes that their sources have (0.1
-/// where nobody knows anything), tables at the height of the hands, session effects likewise.
+/// A random truth of the invented robot. Errors and quantities have the sizes of their sources (0.1
+/// if nothing is known), and so have effects of sessions. Tables are at the height of the hands.
 inline ObservedValues RandomTruth(const ObservedRobot& model, int sessions, Random& random) {
   const Spread spread = FirstSpread(model.setup.sources);
   ObservedValues truth;
@@ -174,8 +174,8 @@ inline ObservedValues RandomTruth(const ObservedRobot& model, int sessions, Rand
   return truth;
 }
 
-/// Adds what every instrument but the plates measures in `count` postures of the true robot, arms
-/// anywhere, without noise.
+/// Adds measurements without noise of all instruments but the plates, in `count` postures of the
+/// true robot with random arms.
 inline void AddMeasurements(const ObservedRobot& model, const ObservedValues& truth, int count,
                             Observations& observations, Random& random) {
   const int first = observations.posture_count();

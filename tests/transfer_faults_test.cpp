@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults of a recording that contradict a calibration of the same robot.
+// Faults of a recording that contradict an earlier calibration of the same robot.
 #include "elastocal/mistakes/transfer_faults.hpp"
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kTurnDegree = M_PI / 180.0;
 
-/// An arm whose errors are known, and two trials of it.
+/// An arm with known errors, in two trials.
 class TransferFaults : public testing::Test {
  protected:
   Recording Trial(const std::string& name, std::uint64_t seed) const {
@@ -85,7 +85,7 @@ class TransferFaults : public testing::Test {
   double clean_ = Fitted(recorded_).metrics_all.rmse_3d;
 };
 
-// By whose fault a robot and its calibration disagree, the trials that agree with it tell.
+// Trials that agree with the calibration tell that the trial that contradicts it is at fault.
 TEST_F(TransferFaults, AJointThatIsOffInOneTrialIsAFaultOfTheTrial) {
   EXPECT_TRUE(Found().empty());
   Turn("elbow_joint", 2.0, 24, 48);
@@ -94,7 +94,7 @@ TEST_F(TransferFaults, AJointThatIsOffInOneTrialIsAFaultOfTheTrial) {
   EXPECT_EQ(Found()[0].find("moved since"), std::string::npos) << Found()[0];
 }
 
-// Whether the robot or the log has changed, nothing tells: both are said.
+// Nothing tells whether the robot or the log has changed, so the message names both.
 TEST_F(TransferFaults, AJointThatIsOffInAllTrialsMayHaveMoved) {
   Turn("elbow_joint", 2.0, 0, 48);
   ExpectFound(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mistakes of a laboratory in the trials of a recording: which are named, and undone on request.
+// Mistakes of a laboratory in trials: they are named, and undone on request.
 
 #include <limits>
 
@@ -19,7 +19,7 @@ namespace {
 
 class TrialMistakes : public testing::Test {
  protected:
-  /// 40 postures of a robot with these errors, as one trial.
+  /// 40 postures of a robot with these errors as one trial.
   Recording AsTrial(const ErrorModel& model, const Eigen::VectorXd& truth, const std::string& name,
                     TrialKind kind, std::uint64_t seed) const {
     Recording recording = MakeSyntheticRecording(model, truth, {.postures = 40, .seed = seed});
@@ -31,8 +31,8 @@ class TrialMistakes : public testing::Test {
   Project project_ = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
 };
 
-// The only trial of the estimate cannot show that one of its joints is off: the fit takes that for
-// an error of the robot. The held-out trial shows it.
+// If there is one trial for the estimate, it cannot show that a joint is off: the fit takes this
+// for an error of the robot. The held-out trial shows it.
 TEST_F(TrialMistakes, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
   const BaseParameters base = FindBaseParameters(model, project_.identifiability);
@@ -75,7 +75,7 @@ TEST_F(TrialMistakes, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
   EXPECT_TRUE(in_part.markers.block(8, 3 * markers[0], 12, 3).array().isNaN().all());
   EXPECT_TRUE(in_part.markers.block(20, 3 * markers[0], 20, 3).array().isFinite().all());
   EXPECT_EQ(left_out(recording, in_part), "");
-  Recording mostly = held_out;  // who knows which part is right?
+  Recording mostly = held_out;  // neither part is known to be right
   mostly.markers.block(10, 3 * markers[0], 25, 3)
       .swap(mostly.markers.block(10, 3 * markers[1], 25, 3));
   EXPECT_EQ(left_out(recording, mostly), "");
@@ -91,7 +91,7 @@ TEST_F(TrialMistakes, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
             std::string::npos)
       << found[0];
 
-  // From the held-out trials on.
+  // The joint is off from the held-out trials on.
   Recording since = held_out;
   since.q.col(2).tail(39).array() += 2.0 * M_PI / 180.0;
   const std::vector<std::string> seam =
@@ -100,7 +100,7 @@ TEST_F(TrialMistakes, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
   EXPECT_NE(seam[0].find("; it may as well be off by the opposite in swing"), std::string::npos)
       << seam[0];
 
-  // A joint that moves few of the markers.
+  // This joint moves only few of the markers.
   Recording of_flange = as_trial("swing", TrialKind::kCalibration, 1);
   of_flange.q.col(6).array() += 1.5 * M_PI / 180.0;
   const std::vector<std::string> of_few = contradictions(of_flange, held_out);
@@ -114,8 +114,8 @@ TEST_F(TrialMistakes, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
   EXPECT_EQ(contradictions(recording, together).size(), 1u);
 }
 
-// Each of the two trials fits by itself, with one of the two markers left out as an outlier in
-// each: the estimate is good, and has both markers in one place.
+// Each of the two trials fits alone, because each leaves out one of the two markers as an outlier.
+// So the estimate is good, but has both markers in one place.
 TEST_F(TrialMistakes, LabelsExchangedInOneOfTwoTrialsAreNamedAndContradictHeldOutOnes) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
   const BaseParameters base = FindBaseParameters(model, project_.identifiability);
@@ -151,7 +151,7 @@ TEST_F(TrialMistakes, LabelsExchangedInOneOfTwoTrialsAreNamedAndContradictHeldOu
       << found[0];
 }
 
-// Markers that a knock made two are unknown to the project.
+// A knock splits markers into two, of which the project knows only one.
 TEST_F(TrialMistakes, AFaultBesideAKnockIsNamedByTheHeldOutTrial) {
   RecordedModel robot{MakeErrorModel(project_.tree, project_.markers, project_.placement), {}};
   robot.base = FindBaseParameters(robot.model, project_.identifiability);
@@ -184,7 +184,7 @@ TEST_F(TrialMistakes, AFaultBesideAKnockIsNamedByTheHeldOutTrial) {
       << found[0];
 }
 
-// A correction that lets a robot explain the recording, if badly, is not taken for the right one.
+// A correction with which a robot explains the recording badly is not taken for the right one.
 TEST_F(TrialMistakes, OfCorrectionsWithoutWhichNoRobotFitsTheBestIsNamed) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
   Recording recording = MakeSyntheticRecording(
@@ -202,8 +202,8 @@ TEST_F(TrialMistakes, OfCorrectionsWithoutWhichNoRobotFitsTheBestIsNamed) {
   EXPECT_EQ(mistakes[0].name, "frozen:" + project_.tree.joints[4].name);
 }
 
-// In one trial the joint hardly moves, so that its markers tell nothing; another one was logged by
-// a program that had it right.
+// In one trial the joint hardly moves, so that its markers tell nothing. Another trial was logged
+// by a program with the right sign.
 TEST_F(TrialMistakes, ASignIsUndoneInAllTrialsThatDoNotContradict) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
   const auto trial = [&](const std::string& name, std::uint64_t seed) {
@@ -220,7 +220,7 @@ TEST_F(TrialMistakes, ASignIsUndoneInAllTrialsThatDoNotContradict) {
   EXPECT_EQ(AcceptMistakes(project_, {name}, measured).size(), 1u);
   EXPECT_EQ(measured.calibration.q, q);
 
-  // Where only a clock told it, it is undone as well.
+  // If only a clock told the mistake, it is undone as well.
   measured.calibration = trial("still", 2);
   measured.calibration.q.col(2).setConstant(-0.01);
   measured.trials.resize(1);
@@ -229,8 +229,8 @@ TEST_F(TrialMistakes, ASignIsUndoneInAllTrialsThatDoNotContradict) {
   EXPECT_EQ(measured.calibration.q(0, 2), 0.01);
 }
 
-// Fits to thousands of moments take minutes: what leaves much of the error of few is not tried on
-// all.
+// Fits to thousands of moments take minutes. If a suspicion leaves much of the error in a few
+// moments, it is not tried on all.
 TEST_F(TrialMistakes, SuspicionsOfMotionsAreTriedByFewMomentsFirst) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
   Measurements measured;
@@ -259,7 +259,7 @@ TEST_F(TrialMistakes, SuspicionsOfMotionsAreTriedByFewMomentsFirst) {
   EXPECT_GT(of_all, 0);
 }
 
-// Cameras whose export has one axis the other way.
+// The cameras' export has one axis reversed.
 TEST_F(TrialMistakes, MarkersOfTheOppositeHandAreNamed) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
   const Recording right = MakeSyntheticRecording(
@@ -281,7 +281,7 @@ TEST_F(TrialMistakes, MarkersOfTheOppositeHandAreNamed) {
   EXPECT_FALSE(LooksMirrored(model, right, 1e-3));
 }
 
-// A mistake that was named is undone by its name, in all trials, and by no other.
+// A mistake that was named is undone by its name in all trials, and by no other name.
 TEST_F(TrialMistakes, MistakesAreUndoneOnRequest) {
   const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
   const auto as_trial = [&](TrialKind kind, std::uint64_t seed) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joint logs whose columns are in another order, and clusters that moved between trials.
+// Joint logs with their columns in another order, and clusters that moved between trials.
 
 #include <limits>
 #include <string>
@@ -19,7 +19,7 @@
 namespace elastocal {
 namespace {
 
-/// An arm of seven coordinates with errors of half a degree, and trials of 40 postures of it.
+/// An arm of seven coordinates with errors of half a degree, and trials of 40 postures.
 class TrialOrders : public testing::Test {
  protected:
   TrialOrders() { truth_ = DrawErrors(model_, base_.kept, {{ParameterKind::kTheta, 0.01}}, 1); }
@@ -92,11 +92,11 @@ TEST_F(TrialOrders, AColumnThatIsACopyOfAnotherOneIsNamed) {
   EXPECT_EQ(found[0].what.rfind("elbow_joint: its column is a copy of that of shoulder_joint", 0),
             0u)
       << found[0].what;
-  // Usually: from so far off, the search does not always find its way.
+  // This holds usually: from so far off, the search does not always succeed.
   EXPECT_LT(Median((found[0].corrected.q - right.q).col(b).cwiseAbs()),
             0.5 * Median((wrong.q - right.q).col(b).cwiseAbs()));
 
-  // A logger that copies does so in all trials: they are one suspicion.
+  // A logger that copies a column does so in all trials, which is one suspicion.
   Recording both = JoinTrials(right, AsTrial("other", TrialKind::kCalibration, 2));
   both.q.col(b) = both.q.col(a);
   const std::vector<TriedCorrection> in_both = FindColumnOrders(model_, both);
@@ -104,7 +104,7 @@ TEST_F(TrialOrders, AColumnThatIsACopyOfAnotherOneIsNamed) {
   ExpectWithin(in_both[0].what, "in trial swing, other, and the markers");
 }
 
-// The trial of the estimate cannot tell where its cluster was on another day.
+// The trial of the estimate does not tell where its cluster was on another day.
 TEST_F(TrialOrders, AClusterThatMovedBetweenTrialsIsNamed) {
   const Recording recording = AsTrial("swing", TrialKind::kCalibration, 1);
   EXPECT_EQ(Contradiction(recording, AsTrial("check", TrialKind::kRandom, 2)), "");

@@ -13,7 +13,7 @@
 
 namespace elastocal {
 
-/// The leg with its markers, and one on the waist.
+/// The leg with its markers and one marker on the waist.
 inline MarkedRobot MarkedTalosLeg() {
   MarkedRobot robot;
   robot.tree = TalosLeg();
@@ -23,18 +23,18 @@ inline MarkedRobot MarkedTalosLeg() {
   return robot;
 }
 
-/// How a trial is played for tests: kinematics only, with clocks and noise. What this cannot show
-/// is left to the virtual experiment on another engine.
+/// Options for playing a trial in tests, with kinematics, clocks and noise. The virtual experiment,
+/// which uses another engine, tests the rest.
 struct PlayOptions {
-  int postures = 24;  ///< random ones within `range` of the limits about their middle
+  int postures = 24;  ///< random, within the share `range` of the limits
   double range = 0.5;
-  double move_s = 3.5;  ///< by a minimum-jerk motion
+  double move_s = 3.5;  ///< duration of a minimum-jerk motion
   double rest_s = 1.5;
   double lag_s = 0.0;  ///< robot time = (1 + 1e-6 drift_ppm) camera time - lag_s
   double drift_ppm = 0.0;
   double frame_rate_hz = 100.0;
   double log_rate_hz = 200.0;
-  double marker_sd = 0.2e-3;    ///< of a coordinate, m
+  double marker_sd = 0.2e-3;    ///< m, noise of a coordinate
   double torque_sd = 0.1;       ///< N.m
   int standing = 0;             ///< the link that does not move
   bool one_by_one = false;      ///< joints move one after the other, the last ones first
@@ -42,15 +42,15 @@ struct PlayOptions {
   std::uint64_t seed = 1;
 };
 
-/// A played trial and what is true of it.
+/// A played trial and its true values.
 struct ScriptedTrial {
   MarkerTrajectories markers;
   JointLog log;
-  Eigen::MatrixXd q;             ///< postures x coordinates, as they were held
-  Eigen::VectorXd rest_begin_s;  ///< of the cameras' clock
+  Eigen::MatrixXd q;             ///< held postures x coordinates
+  Eigen::VectorXd rest_begin_s;  ///< by the cameras' clock
 };
 
-/// Any smooth function of the posture serves as torques.
+/// Torques may be any smooth function of the posture.
 inline Eigen::VectorXd PlayedTorques(const RobotTree& tree, const Eigen::VectorXd& q) {
   Eigen::VectorXd torques(static_cast<Eigen::Index>(tree.joints.size()));
   for (Eigen::Index k = 0; k < torques.size(); ++k) {
@@ -60,7 +60,7 @@ inline Eigen::VectorXd PlayedTorques(const RobotTree& tree, const Eigen::VectorX
   return torques;
 }
 
-/// Positions of the markers in the cameras' frame, one after the other.
+/// Positions of all markers in the cameras' frame, as one vector.
 inline Eigen::VectorXd PlayedPositions(const MarkedRobot& robot, int standing,
                                        const Eigen::VectorXd& q) {
   const Transform T_camera_standing = FromXyzRpy({1.2, -0.7, 0.05}, {0.0, 0.0, 2.1});
@@ -134,7 +134,7 @@ inline MarkerTrajectories PlayMarkers(const MarkedRobot& robot, const PlayedMoti
   return markers;
 }
 
-/// A log as long as the cameras' recording, of all joints that follow no other.
+/// A log of the duration of the cameras' recording, of all joints that follow no other.
 inline JointLog PlayLog(const MarkedRobot& robot, const PlayedMotion& motion,
                         const PlayOptions& options) {
   Random random(options.seed + 2);

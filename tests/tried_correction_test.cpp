@@ -13,7 +13,7 @@ namespace {
 
 using TriedCorrections = FaultyArm;
 
-// Three postures of a trial do not show it.
+// The three postures of the short trial do not show the fault.
 TEST_F(TriedCorrections, OfSomeTrialsAreTriedInAll) {
   recorded_.trials = {{"long", TrialKind::kCalibration, {project_.chains.front().name}},
                       {"short", TrialKind::kCalibration, {project_.chains.front().name}}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A joint that the project says stood still, and that the markers show to move.
+// The project says that a joint stood still, but the markers show that it moved.
 #include "elastocal/mistakes/unrecorded_motion.hpp"
 
 #include <string>
@@ -23,8 +23,8 @@ class UnrecordedMotion : public testing::Test {
     return -1;
   }
 
-  /// What is said if the joint was not recorded and the project has it at 0.1 rad; it was elsewhere
-  /// in postures `begin` to `end` of each trial, and there in the others.
+  /// The message if the joint was not recorded and stands at 0.1 rad in the project. In postures
+  /// `begin` to `end` of each trial it was elsewhere.
   std::string Said(const std::string& joint, int begin, int end) {
     const int c = CoordinateOf(joint);
     for (PlayedTrial& trial : robot_.trials) {

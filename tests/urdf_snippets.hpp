@@ -21,7 +21,7 @@ inline std::string JointXml(const std::string& name, const std::string& type,
          "\"/><child link=\"" + child + "\"/>" + more + "</joint>\n";
 }
 
-/// `contents` begins on line 2.
+/// Parses a robot whose `contents` begin on line 2.
 inline RobotTree ParseLinks(const std::string& contents) {
   return ParseUrdf("<robot name=\"r\">\n" + contents + "</robot>\n", "r.urdf");
 }
@@ -31,7 +31,7 @@ inline void ExpectLinksError(const std::string& contents,
   ExpectInputError([&] { ParseLinks(contents); }, parts);
 }
 
-/// A robot of two links whose joint has `more` in it; the joint is on line 4.
+/// Expects an error in a robot of two links. Its joint is on line 4 and contains `more`.
 inline void ExpectJointError(const std::string& type, const std::string& more,
                              std::initializer_list<std::string> parts) {
   ExpectLinksError(LinkXml("a") + LinkXml("b") + JointXml("j", type, "a", "b", more), parts);

@@ -18,7 +18,8 @@ inline std::string PoseText(const Transform& T) {
                      p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
 }
 
-/// Links of a body of the tree as one point mass (with some inertia): all that statics needs.
+/// The links of a body of the tree as one point mass (with some inertia), which suffices for
+/// statics.
 inline std::string InertialText(const RobotTree& tree, int body) {
   const BodyInertia inertia = BodyInertias(tree)[static_cast<std::size_t>(body)];
   const double mass = inertia.mass;
@@ -29,7 +30,8 @@ inline std::string InertialText(const RobotTree& tree, int body) {
       0.01 + 0.01 * mass);
 }
 
-/// A user's model: position-controlled motors, and other things that the export must not disturb.
+/// A user's model with position-controlled motors and other elements that the export must not
+/// change.
 struct UserModel {
   const RobotTree& tree;
 

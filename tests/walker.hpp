@@ -15,7 +15,7 @@ inline void GiveMass(RobotTree& tree, int link, double mass, const Eigen::Vector
   tree.links[static_cast<std::size_t>(link)].inertia = 0.02 * mass * Eigen::Matrix3d::Identity();
 }
 
-/// A leg with the lengths of TALOS; returns the sole.
+/// Adds a leg with the lengths of TALOS. Returns the sole.
 inline int AddWalkingLeg(RobotTree& tree, const std::string& name, double side) {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY();
   int link = AddJoint(tree, name + "_1", 0, Offset(-0.02, side * 0.085, -0.27), {0, 0, 1});
@@ -41,7 +41,8 @@ struct Walker {
   int hand = 0, belly = 0;
 };
 
-/// 60 kg: waist, a trunk that turns and bends, an arm of one joint ahead, two legs.
+/// A robot of 60 kg: waist, a trunk that turns and bends, an arm of one joint in front, and two
+/// legs.
 inline Walker MakeWalker() {
   Walker walker;
   walker.tree = MakeRoot();

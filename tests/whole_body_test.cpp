@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole body at once, standing on its feet: recovery of truths from the estimator's own model.
+// The whole body at once, standing on its feet: truths of the estimator's own model are recovered.
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +21,8 @@
 namespace elastocal {
 namespace {
 
-// Markers, feet and ties of trials; residuals in mm, unknowns of the order of one. The loads are
-// held, as in a solve.
+// Residuals of markers, feet and ties of trials are in mm, and unknowns are of the order of one.
+// Loads are constant, as during a solve.
 TEST(WholeBody, JacobianEqualsDifferences) {
   const StandingHumanoid robot(2, 5, true);
   const Eigen::VectorXd truth = robot.DrawTruth(6);
@@ -73,13 +73,13 @@ TEST(WholeBody, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
     const Parameter& parameter = robot.model.parameters[i];
     if (parameter.kind == ParameterKind::kWaistPose) continue;
     const double scale = ParameterScale(parameter);
-    // Masses stay where the nominal link frames are, so that the choice between combinations of
-    // parameters that the markers cannot tell apart changes the loads a little: not noise, but at a
-    // noise of a micrometre a few standard deviations.
+    // Masses stay where the nominal link frames are. So the choice between combinations of
+    // parameters that markers cannot tell apart changes the loads a little. This is not noise, but
+    // a few standard deviations if the noise is a micrometre.
     EXPECT_LT(std::abs(result.delta[i] - truth[i]), 1e-6 * scale + 10.0 * result.sd[i])
         << parameter.name;
-    // Turning a foot about the vertical is all but what turning the robot is: the compliance about
-    // it is determined a hundred times worse.
+    // Turning a foot about the vertical is almost the same as turning the robot. So the compliance
+    // about the vertical is determined a hundred times worse.
     if (result.sd[i] < 1e-3 * scale && !parameter.name.ends_with(".compliance_rz")) {
       EXPECT_NEAR(result.delta[i] / scale, truth[i] / scale, 5e-3) << parameter.name;
       ++told;
@@ -88,8 +88,9 @@ TEST(WholeBody, NoiseFreeDataGiveBackEveryIdentifiableParameter) {
   EXPECT_GT(told, 100);
 }
 
-// The constraint of eq. 14 rooted in the foot (as a nuisance: above): one truth, if the data are
-// perfect. What this form holds as exact has a standard deviation of a micrometre.
+// The constraint of eq. 14 with the foot as root (above, its pose is a nuisance). With perfect
+// data, both give the truth. What this form takes as exact has a standard deviation of a micrometre
+// above.
 TEST(WholeBody, RootedInTheFootGivesBackTheTruth) {
   const StandingHumanoid robot(10);
   const Eigen::VectorXd truth = robot.DrawTruth(3);
@@ -109,7 +110,7 @@ TEST(WholeBody, RootedInTheFootGivesBackTheTruth) {
   }
 }
 
-/// The robot and what it records with usual noise, 16 postures a trial.
+/// The robot and its recording with usual noise and 16 postures in each trial.
 class StandingTest : public ::testing::Test {
  protected:
   Recording Record() const {
@@ -120,7 +121,7 @@ class StandingTest : public ::testing::Test {
   CalibrationResult Estimate(const Recording& recording) const {
     return Calibrate(robot_.model, recording, robot_.base, ModelKind::kFull, {});
   }
-  /// The largest difference of a joint's parameter or a compliance, in its standard deviations.
+  /// The largest difference of a joint's parameter or a compliance, in standard deviations.
   double LargestDifference(const CalibrationResult& a, const CalibrationResult& b) const {
     double largest = 0.0;
     for (int i : robot_.base.kept) {
@@ -138,7 +139,7 @@ class StandingTest : public ::testing::Test {
 TEST_F(StandingTest, AFootThatSlippedIsNamedAndStandsElsewhereFromThereOn) {
   const Recording clean = Record();
   Recording slipped = clean;
-  const int trial = 3;  // the left leg swings, the robot stands on the right one
+  const int trial = 3;  // the left leg swings while the robot stands on the right one
   ASSERT_EQ(clean.trials[trial].name, "leg_left");
   int posture = 0;
   while (clean.trial[posture] != trial) ++posture;
@@ -157,7 +158,7 @@ TEST_F(StandingTest, AFootThatSlippedIsNamedAndStandsElsewhereFromThereOn) {
   EXPECT_LT(LargestDifference(result, without), 3.0);
 }
 
-// Support is data: what carries the robot does so whether it gives way or not.
+// The support is known from the data: a leg carries the robot whether it gives way or not.
 TEST_F(StandingTest, RigidLegsCarryTheRobotToo) {
   for (int i = 0; i < robot_.model.parameter_count(); ++i) {
     if (robot_.model.parameters[i].leg >= 0) truth_[i] = 0.0;
@@ -176,7 +177,7 @@ TEST_F(StandingTest, RigidLegsCarryTheRobotToo) {
   EXPECT_TRUE(result.outliers.empty());
   EXPECT_TRUE(result.loose_footings.empty());
   EXPECT_TRUE(AssessLegs(result, recording).empty());
-  // The standing leg tells where its joints are: as well as with compliances that are not there.
+  // The standing leg tells its joints as well as with a model whose compliances do not exist.
   const CalibrationResult elastic = Estimate(recording);
   int compared = 0;
   for (int i = 0; i < model.parameter_count(); ++i) {
@@ -191,12 +192,12 @@ TEST_F(StandingTest, RigidLegsCarryTheRobotToo) {
   EXPECT_GT(compared, 50);
 }
 
-// An encoder that was off in the second half of its trial, and right again in the next one.
+// An encoder is off in the second half of a trial, and right again in the next trial.
 TEST_F(StandingTest, AnOffsetThatEndsWithItsTrialIsNamed) {
   Recording recording = Record();
   const int joint = FindJoint(robot_.project.tree, "torso_1_joint");
   const int coordinate = robot_.project.tree.joints[joint].coordinate;
-  const int trial = 1;  // the left arm; the next one shows the trunk as well
+  const int trial = 1;  // the left arm; the next trial shows the trunk as well
   ASSERT_EQ(recording.trials[trial].name, "torso_arm_left");
   const auto first = std::find(recording.trial.begin(), recording.trial.end(), trial);
   const auto begin = static_cast<int>(first - recording.trial.begin());
@@ -212,7 +213,7 @@ TEST_F(StandingTest, AnOffsetThatEndsWithItsTrialIsNamed) {
   EXPECT_NEAR(found[0].size, 0.05, 0.005);
 }
 
-// A log in another unit or from another gear: what a joint moves, it moves in other trials too.
+// A log in another unit or for another gear. Other trials show the same joint.
 TEST_F(StandingTest, AGainInOneTrialIsNoOffset) {
   Recording recording = Record();
   const int joint = FindJoint(robot_.project.tree, "torso_1_joint");
@@ -230,7 +231,7 @@ TEST_F(StandingTest, AGainInOneTrialIsNoOffset) {
   EXPECT_NEAR(found[0].size, 0.03, 0.003);
 }
 
-// Faults of torque sensors are told from the robot's own errors by statics.
+// Statics tells faults of torque sensors from errors of the robot.
 TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   const Recording clean = Record();
   EXPECT_TRUE(FindContradictoryTorques(robot_.model, clean, 1e-3).empty());
@@ -246,7 +247,7 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   Recording recording = clean;
   recording.torques.col(knee) *= -1.0;
   only(recording, knee, TorqueContradiction::kReversed);
-  const int elbow = FindJoint(robot_.project.tree, "arm_left_4_joint");  // bears little
+  const int elbow = FindJoint(robot_.project.tree, "arm_left_4_joint");  // carries little
   recording = clean;
   recording.torques.col(elbow) *= -1.0;
   only(recording, elbow, TorqueContradiction::kReversed);
@@ -258,12 +259,12 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   recording.torques.col(knee) *= 1000.0;
   only(recording, knee, TorqueContradiction::kScaled);
   recording = clean;
-  recording.torques.col(knee) *= 1.7;  // alone in its leg
+  recording.torques.col(knee) *= 1.7;  // only this sensor of its leg
   only(recording, knee, TorqueContradiction::kScaled);
   recording = clean;
   for (int joint : robot_.model.legs[1].joints) recording.torques.col(joint) *= 1.7;
   for (const auto& one : FindContradictoryTorques(robot_.model, recording, 1e-3)) {
-    EXPECT_NE(one.kind, TorqueContradiction::kScaled) << one.joint;  // masses may be
+    EXPECT_NE(one.kind, TorqueContradiction::kScaled) << one.joint;  // masses may be wrong by this
   }
   recording = clean;
   recording.torques.col(hip).array() += 40.0;
@@ -276,7 +277,7 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   EXPECT_EQ(swapped[1].other, swapped[0].joint);
   HideTorques(swapped, recording);
   EXPECT_TRUE(FindContradictoryTorques(robot_.model, recording, 1e-3).empty());
-  // All of them, those of joints whose load varies little as well.
+  // All sensors are reversed, including those of joints whose load varies little.
   recording = clean;
   recording.torques *= -1.0;
   const auto all = FindContradictoryTorques(robot_.model, recording, 1e-3);
@@ -288,7 +289,7 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
   for (const ContradictoryTorque& one : all) {
     EXPECT_EQ(static_cast<int>(one.kind), static_cast<int>(TorqueContradiction::kReversed));
   }
-  // A factor that no sensor by itself would be accused of, or only some of them.
+  // With this factor, no single sensor would be accused, or only some of them.
   for (const double factor : {1.7, 2.0, 0.6}) {
     recording = clean;
     recording.torques *= factor;
@@ -300,12 +301,12 @@ TEST_F(StandingTest, TorquesThatContradictStaticsAreNamed) {
     }
   }
   recording = clean;
-  recording.torques *= 1.3;  // masses of a robot description may be off by this
+  recording.torques *= 1.3;  // masses of a robot description may have such errors
   EXPECT_TRUE(FindContradictoryTorques(robot_.model, recording, 1e-3).empty());
 }
 
-// A weight that is aside by 20 mm hides what an ankle bears where its torques vary little, but it
-// turns nothing round.
+// A weight that is displaced by 20 mm hides the load of an ankle whose torques vary little. But it
+// does not reverse its sign.
 TEST_F(StandingTest, AReversedSensorThatVariesLittleIsNamed) {
   const Recording clean = Record();
   const int ankle = FindJoint(robot_.project.tree, "leg_left_5_joint");
@@ -316,7 +317,7 @@ TEST_F(StandingTest, AReversedSensorThatVariesLittleIsNamed) {
   ASSERT_GT(known.size(), 24u);
   const double middle = Median(
       Eigen::Map<const Eigen::VectorXd>(known.data(), static_cast<Eigen::Index>(known.size())));
-  constexpr double kNear = 20.0;  // N.m; the spread is below the 17 that 20 mm stand for
+  constexpr double kNear = 20.0;  // N.m; less spread than 20 mm would cause, 17 N.m
   Recording recording = clean;
   for (double& torque : recording.torques.col(ankle)) {
     torque = std::abs(torque - middle) < kNear ? torque : std::nan("");
@@ -329,13 +330,13 @@ TEST_F(StandingTest, AReversedSensorThatVariesLittleIsNamed) {
   EXPECT_EQ(static_cast<int>(found[0].kind), static_cast<int>(TorqueContradiction::kReversed));
 }
 
-// What is not known of a leg's load: sensors that all show a quarter too much are off by a fifth of
-// it.
+// The uncertainty of a leg's load: if all sensors show a quarter too much, their error is a fifth
+// of their values.
 TEST_F(StandingTest, TheDisagreementOfSensorsAndStaticsIsAShareOfTheTorques) {
   Recording recording = Record();
   const Placement placement = RegisterPlacement(robot_.model, recording, 1e-3);
   const double clean = TorqueDisagreement(robot_.model, recording, placement, 0);
-  EXPECT_LT(clean, 0.06);  // statics is that of nominal geometry
+  EXPECT_LT(clean, 0.06);  // statics uses the nominal geometry
   recording.torques *= 1.25;
   EXPECT_NEAR(TorqueDisagreement(robot_.model, recording, placement, 0), 0.2, clean);
   recording.torques.setConstant(std::nan(""));
@@ -352,7 +353,7 @@ TEST_F(StandingTest, ATorqueSensorLeftOutIsReplacedByStatics) {
   EXPECT_LT(LargestDifference(result, Estimate(clean)), 3.0);
 }
 
-// A straight knee makes the leg's Jacobian singular: its torques say nothing about the load.
+// A straight knee makes the leg's Jacobian singular, so that its torques do not tell the load.
 TEST_F(StandingTest, StraightKneesAreReportedAndTheirLoadsTakenFromStatics) {
   for (const char* side : {"left", "right"}) {
     const std::string leg = std::string("leg_") + side;
@@ -368,7 +369,7 @@ TEST_F(StandingTest, StraightKneesAreReportedAndTheirLoadsTakenFromStatics) {
   }
   const CalibrationResult result = Estimate(Record());
   EXPECT_EQ(result.termination, Termination::kConverged);
-  EXPECT_EQ(result.loads.badly_conditioned.size(), 32u);  // all of both leg trials
+  EXPECT_EQ(result.loads.badly_conditioned.size(), 32u);  // all postures of both leg trials
   for (int i : robot_.base.kept) {
     const Parameter& parameter = robot_.model.parameters[i];
     if (parameter.kind != ParameterKind::kLegForce && parameter.kind != ParameterKind::kLegMoment) {

@@ -3,13 +3,13 @@ import {existsSync, readFileSync} from 'node:fs';
 
 const ours = readFileSync(new URL('LICENSE', import.meta.url), 'utf8');
 
-/** Name, version and licence of one package of node_modules, with the text of the licence. */
+/** Name, version, licence and licence text of a package in node_modules. */
 function notice(folder) {
   const {name, version, license} = JSON.parse(readFileSync(`${folder}/package.json`, 'utf8'));
   let text = '';
   if (existsSync(`${folder}/LICENSE`)) {
     text = readFileSync(`${folder}/LICENSE`, 'utf8');
-  } else if (license === 'Apache-2.0') {  // the licence of elastocal as well: the same text
+  } else if (license === 'Apache-2.0') {  // the same text as the licence of elastocal
     const readme = readFileSync(`${folder}/README.md`, 'utf8');
     text = `${readme.match(/^Copyright [^]*?(?=\n\n|$)/m)?.[0] ?? ''}\n\n${ours}`;
   } else {
@@ -19,8 +19,8 @@ function notice(folder) {
 }
 
 /**
- * A plugin of vite: the licences of the packages that are in the bundle, in the page in place of @NOTICES@
- * and as the file notices.txt.
+ * A plugin of vite that writes the licences of the bundled packages into the page, in place of @NOTICES@,
+ * and into the file notices.txt.
  */
 export function notices() {
   return {

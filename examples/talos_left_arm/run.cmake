@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# Runs PROGRAM, the example calibrate_recording, with the project of this folder and the measured left
-# arm of a TALOS; fails where it does not print the error that the arm has after calibration. The recording is
-# in the folder that ELASTOCAL_SHARED_DATA names, or beside the repository (SOURCE) in shared/data.
+# Runs PROGRAM, the example calibrate_recording, with the project of this folder and the measured
+# left arm of a TALOS. Fails if it does not print the error of the arm after calibration. The
+# recording is in the folder that ELASTOCAL_SHARED_DATA names, or in shared/data beside the
+# repository (SOURCE).
 cmake_minimum_required(VERSION 3.25)
 set(data ${SOURCE}/../shared/data)
 if(DEFINED ENV{ELASTOCAL_SHARED_DATA})
@@ -12,7 +13,7 @@ if(NOT EXISTS ${recording})
   message(NOTICE "Skipped: there is no ${recording}")
   return()
 endif()
-# Under the sanitizers, which take twenty times as long, LINES of it do.
+# Under the sanitizers, which take twenty times as long, only LINES of the recording are used.
 set(printed "to 0\\.57 mm")
 if(LINES)
   set(printed "to 0\\.[0-9]+ mm")

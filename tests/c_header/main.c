@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reads postures and prints what the header makes of them, as write_header.cpp does. */
+/* Reads postures and prints the results of the header for them, like write_header.cpp. */
 #include <stdio.h>
 
 #include "robot.h"

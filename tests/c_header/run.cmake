@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The header that `elastocal export --format c99` writes: each C compiler here takes it without a
-# warning, and the program gives the bits of the library.
+# Every installed C compiler accepts the header of `elastocal export --format c99` without a
+# warning, and the compiled program gives the same bits as the library.
 #   cmake -DWRITER=... -DSOURCE=... -DWORK=... -P run.cmake
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a C99 header of a robot with errors, postures, and what the library makes of them:
+// Writes a C99 header of a robot with errors, postures, and the library's results for them:
 //   write_header FOLDER
 #include <algorithm>
 #include <cstdio>
@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
   calibration.joint_errors["arm_left_4_joint.hysteresis"] = -2e-3;
   calibration.joint_errors["torso_2_joint.backlash"] = 1e-3;
   RuntimeModel model = MakeRuntimeModel(project, calibration);
-  // Names that C does not tell apart, or that the header needs itself.
+  // C cannot distinguish the first two names, and the header needs the third itself.
   model.coordinate_names[1] = "a-b";
   model.coordinate_names[2] = "A_b";
   model.link_names[0] = "count";
@@ -41,10 +41,10 @@ int main(int argc, char** argv) {
   robot.LimitChanges(most);
   robot.EaseChanges(4.0);
   for (int i = 0; i < 60; ++i) {
-    const bool goes_on = i >= 40;  // near the last one: Command follows
+    const bool goes_on = i >= 40;  // near the last posture, as in a motion
     if (!goes_on) q = project.motion.rest;
     for (double& position : q) position += (goes_on ? 0.1 : 1.0) * random.Uniform(-0.15, 0.15);
-    // Stretched limbs and joints near their limits, where Command searches longer.
+    // Stretched limbs and joints near their limits need a longer search in Command.
     for (Eigen::Index c = 0; i >= 20 && !goes_on && c < q.size(); ++c) {
       const auto at = static_cast<std::size_t>(c);
       q[c] = std::clamp(q[c] - 0.5, model.lower[at], model.upper[at]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a recording of the robot of a project with errors: what the component planning can do.
+// Writes a recording of a project's robot with errors, as an example of the component planning:
 //   record PROJECT.yaml RECORDING.csv
 
 #include "elastocal/elastocal.hpp"

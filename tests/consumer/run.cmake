@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs the build folder BUILD into the empty folder WORK and builds tests/consumer against it
 # there, with the generator, compiler and flags of BUILD: once with all of elastocal, which writes a
-# recording, and once with the component calibration, which calibrates from it.
+# recording, and once with the component calibration, which calibrates from this recording.
 cmake_minimum_required(VERSION 3.25)
 set(prefix ${WORK}/prefix)
 set(source ${CMAKE_CURRENT_LIST_DIR}/../..)
@@ -11,7 +11,7 @@ macro(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
 endmacro()
 
-# Only the installed package may be found: not the build folder, nor a copy of the system's.
+# Only the installed package may be found, neither the build folder nor a copy in the system.
 macro(configure component)
   execute_process(COMMAND ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/${component}
     -G ${GENERATOR} -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_CXX_COMPILER=${COMPILER}
@@ -34,7 +34,7 @@ if(NOT output MATCHES "to 0\\.3[0-9] mm")  # 0.2 mm a coordinate is 0.35 mm in 3
   message(FATAL_ERROR "expected 'to 0.3. mm'")
 endif()
 
-# A controller refuses a model that is not there, in words.
+# A controller refuses a missing model with a message.
 execute_process(COMMAND ${WORK}/runtime/stand ${WORK}/absent.txt ERROR_VARIABLE error RESULT_VARIABLE status)
 if(status EQUAL 0 OR NOT error MATCHES "absent.txt: cannot be read")
   message(FATAL_ERROR "expected a refusal: ${error}")

@@ -17,7 +17,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-# Which sections describe a file. Several commands may write the same keys.
+# The sections that describe each file. Several commands may write the same keys.
 SUMMARY = ["The summary", "Noise", "Frames and places of markers", "Cross-validation", "Keys of a recording folder"]
 SECTIONS = {
     "inspect.json": ["Inspection"],
@@ -42,7 +42,8 @@ SECTIONS = {
     "motion_margins.json": ["Planned motion"],
 }
 
-# Below these keys stand names of the robot or of models, which no document lists; how many levels of them.
+# Below these keys are names of the robot or of models, which no document lists. The number is that
+# of levels with names.
 NAMED = {"dropped_regrouped_into": 2} | dict.fromkeys(
     ["weakest_sd", "stiffness", "by_marker", "posture_rad", "held_out", "counts", "held_out_rmse_3d_mm",
      "waist_error_mm", "predicted", "rmse_3d_mm", "rmse_coordinate_mm", "max_mm", "meshes", "rmse_3d_mm_with_outliers",
@@ -50,7 +51,7 @@ NAMED = {"dropped_regrouped_into": 2} | dict.fromkeys(
 
 
 def keys_of(value: object, names: int = 0) -> set[str]:
-    """All keys of a JSON value, without those that are names in its first `names` levels."""
+    """All keys of a JSON value except names in its first `names` levels."""
     if isinstance(value, list):
         return set().union(*(keys_of(one, names) for one in value))
     if not isinstance(value, dict):
@@ -66,7 +67,7 @@ def sections_of(text: str) -> dict[str, str]:
 
 
 def words(text: str) -> set[str]:
-    """The keys in backticks: of `a.b[].c` each part."""
+    """The keys in backticks. Of `a.b[].c`, each part is a key."""
     spans = re.findall(r"`([^`\n]+)`", text)
     return set().union(*(set(re.findall(r"\w+", span)) for span in spans))
 
@@ -81,7 +82,7 @@ def first_column(text: str) -> set[str]:
 
 
 def write_files(program: str, source: Path, chain: Path, work: Path) -> None:
-    """Files of commands that the demo does not run, or of which it keeps none."""
+    """Writes the files of commands that the demo does not run, or whose files it does not keep."""
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
     arm, recording = source / "tests/robots/arm6_project.yaml", work / "recording"
@@ -139,7 +140,7 @@ def main() -> int:
             written = keys_of(json.loads(path.read_text()), 1 if name == "runs.json" else 0)
             missing = sorted(written - words(text))
             compared += len(written)
-            strings |= written  # those that are put together from parts
+            strings |= written  # for keys that are composed of parts
             errors += [f"{path}: {', '.join(headings)} of docs/formats.md lacks the key {key}" for key in missing]
         if not found:
             errors.append(f"{name}: was not written")

@@ -4,13 +4,13 @@
 
   run_commands.py --source REPOSITORY --program elastocal --python MODULE_FOLDER --ctest NAMES --chain DIR WORK
 
-Blocks marked `sh` and `python` are commands. Those of a document run one after the other in a folder of its own, in
-which lies what the reader is told to have (USER_FILES). A comment above a block says that it does not run here, and why:
+Blocks marked `sh` and `python` are commands. Those of a document run one after the other in a folder of their own, which
+has the files that the reader is told to have (USER_FILES). A comment above a block says that it does not run here, and why:
 
   <!-- covered by: NAME -->   the test NAME runs the same
   <!-- not run: REASON -->
 
-Of these, and of commands within sentences, the names of command and options are compared with --help.
+In these blocks, and in sentences, the names of commands and options are compared with --help.
 """
 
 import argparse
@@ -28,8 +28,8 @@ INLINE = re.compile(r"`elastocal ([a-z][^`]*)`")
 ARM = "talos_left_arm_mocap/talos_left_arm_02_10_contact.csv"
 TABLE = "talos_table_contact"
 
-# What a reader of a document has, and what stands in for it: of the repository, of the shared data or of the demo's
-# results.
+# The files that a reader of a document has, and what replaces them: parts of the repository, of the
+# shared data, or of the demo's results.
 COMMON = {name: f"source:{name}" for name in ("models", "examples", "tests", "docs")}
 USER_FILES = {
     "README.md": {
@@ -57,7 +57,7 @@ USER_FILES = {
 
 
 def prepare(document: str, args: argparse.Namespace) -> tuple[Path, str]:
-    """The folder in which a document's commands run, and the first file that is not to be had."""
+    """The folder in which a document's commands run, and the first file that is missing."""
     folder = args.work / document.replace("/", "_").removesuffix(".md")
     (folder / "bin").mkdir(parents=True)
     (folder / "bin/elastocal").symlink_to(args.program)
@@ -69,7 +69,7 @@ def prepare(document: str, args: argparse.Namespace) -> tuple[Path, str]:
         kind, path = origin.split(":", 1)
         if not (places[kind] / path).exists():
             missing = missing or name
-        elif origin == "chain:":  # results, which commands add to; the recordings stay where they are
+        elif origin == "chain:":  # commands add files to results: a copy without recordings
             shutil.copytree(args.chain, folder / name, ignore=shutil.ignore_patterns("recording*"))
         else:
             (folder / name).parent.mkdir(exist_ok=True)
@@ -103,7 +103,7 @@ def commands_of(block: str) -> list[str]:
 
 
 def wrong_scripts(block: str, source: Path) -> list[str]:
-    """Scripts of the repository that a block calls and that are not there or cannot be run as it does."""
+    """Scripts of the repository that a block calls but that are missing or cannot be run in this way."""
     calls = re.findall(r"^\s*(python3 )?((?:tests|scripts)/[\w./]+)", block, re.MULTILINE)
     return [f"{path} cannot be run" for by_python, path in calls
             if not os.access(source / path, os.R_OK if by_python else os.X_OK)]

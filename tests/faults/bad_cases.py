@@ -15,7 +15,7 @@ import inputs
 
 QUICK = ["-o", "out", "--quiet"]
 
-# A case: `words` is the command line, `names` what the message must name, one of them.
+# A case. `words` is the command line. The message must contain one of `names`.
 Case = collections.namedtuple("Case", "kind label words names")
 
 
@@ -39,12 +39,12 @@ class Tries:
     def file(self, kind, label, name, contents, words, *names):
         """A case with one file; `words` is a function of its path."""
         path = self.folder() / name
-        path.unlink(missing_ok=True)  # a link to a good file
+        path.unlink(missing_ok=True)  # it may be a link to a good file
         path.write_bytes(contents if isinstance(contents, bytes) else contents.encode())
         self.add(kind, label, words(path), name, *names)
 
 
-# What stands for a value that no key expects in this form. Texts of YAML.
+# Values, as texts of YAML, that no key expects in this form.
 VALUES = {
     "text": "abc", "list": "[1, 2]", "mapping": "{a: 1}", "0": "0", "-1": "-1", "tiny": "1e-300",
     "huge": "1e300", "too huge": "1e999", "nan": ".nan", "infinity": ".inf", "nothing": "",
@@ -89,7 +89,7 @@ def yaml_keys(tries, kind, name, document, words, share=1.0):
 
 
 def damaged(data, rng):
-    """Damages that any file can have."""
+    """Kinds of damage that any file can have."""
     lines = data.split(b"\n")
     middle = len(lines) // 2
     yield "empty", b""
@@ -112,7 +112,7 @@ def any_files(tries, kind, name, data, words):
 
 
 def table_cells(tries, kind, name, data, separator, words, count=2):
-    """Cells of the header and of rows replaced; rows and columns that lack."""
+    """Replaced cells of the header and of rows; missing rows and columns."""
     lines = data.decode().rstrip("\n").split("\n")
     values = ["", "abc", "nan", "inf", "1e300", "1e999", "-1e300", "1,5", "caf\u00e9", "9" * 400,
               "1e-320", "0x10", '"', "\x1b[2J"]
@@ -135,7 +135,7 @@ def table_cells(tries, kind, name, data, separator, words, count=2):
 
 
 def strange_places(tries, base):
-    """What no input should be, and where no output can go, for each option that names a file."""
+    """Places that cannot be an input or an output, for each option that names a file."""
     root = base.root / "places"
     (root / "folder").mkdir(parents=True)
     os.mkfifo(root / "pipe")
@@ -197,7 +197,7 @@ def strange_places(tries, base):
 
 
 def plan_of_an_arm(command):
-    """Values that are fine still do not plan a motion of what has no legs."""
+    """Good values still do not plan a motion of a robot without legs."""
     return ["expected a leg", "does not lie flat"] if command == "plan" else []
 
 
@@ -222,9 +222,9 @@ def options(tries, base):
         for option in sorted(set(re.findall(r"(--[a-z0-9-]+) [A-Z]+", text))):
             if option in ("--json", "--output"):
                 continue
-            # The demonstration takes minutes with whatever it accepts.
+            # The demonstration runs for minutes with any value that it accepts.
             for value in values if command != "demo" else ["nan", "-1", "abc"]:
-                # The simulation has many of one kind.
+                # The simulation has many options of one kind.
                 if command == "simulate" and tries.random.random() > 0.4:
                     continue
                 shown = {b"\xff\xe9": "\ufffd\ufffd", "\x1b[2J": "?[2J"}.get(value, value)
@@ -237,7 +237,7 @@ def options(tries, base):
 
 
 def urdfs(tries, base):
-    """Every numeric attribute of every element, and trees that are none."""
+    """Every numeric attribute of every element, and links that form no tree."""
     text = base.urdf.read_text()
     words = lambda path: ["calibrate", base.project_for(path), "--recording", base.recording,
                           *QUICK]
@@ -263,7 +263,7 @@ def urdfs(tries, base):
 
 
 def results(tries, base):
-    """Damaged results, read by all who read them; SHA256SUMS is not there to tell."""
+    """Damaged results for all of their readers, without SHA256SUMS."""
     readers = {
         "calibration.yaml": [
             lambda p: ["validate", base.project, "--recording", base.table, "--calibration", p],
@@ -297,7 +297,7 @@ def results(tries, base):
         for label, contents in damages.items():
             for number, words in enumerate(all_words):
                 folder = tries.folder()
-                # The page takes the robot from report_data.json, if it is there.
+                # If report_data.json is there, the page takes the robot from it.
                 left_out = ["SHA256SUMS", "report.html"] + ["report_data.json"] * (name == "robot_data.json")
                 shutil.copytree(base.out, folder, dirs_exist_ok=True, copy_function=os.link,
                                 ignore=shutil.ignore_patterns(*left_out))

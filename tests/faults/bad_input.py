@@ -60,7 +60,7 @@ def run(program, case, root):
 
 
 def faults_of(outcome):
-    """What is wrong with how a case ended, in words."""
+    """Describes what is wrong with the end of a case."""
     if outcome.code is None:
         yield f"did not end within {LONGEST_S:.0f} s"
     elif outcome.code not in (0, 2, 3, 4):
@@ -78,12 +78,12 @@ def faults_of(outcome):
 
 
 def named(outcome):
-    """Whether the message names the place. What data say is named by trial, faults by name."""
+    """Whether the message names the place. Contents of data are named by their trial, faults by their name."""
     names = [*outcome.case.names, "trial arm", "trial 'arm'", "fault: ", "project.yaml:"]
     if outcome.case.kind == "URDF":
         names.append("robot 'arm6'")
     if outcome.case.kind == "results: calibration.yaml":
-        names.append("covariance.csv")  # which no longer belongs to it
+        names.append("covariance.csv")  # because it no longer belongs to this file
     return any(os.fsencode(name)[:60] in outcome.message for name in names if name)
 
 

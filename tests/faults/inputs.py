@@ -8,7 +8,7 @@ import re
 import shutil
 import subprocess
 
-# So that a simulation ends within a second.
+# Options for simulations that end within a second.
 SHORT = ["--arm-postures", "2", "--random-postures", "1", "--repetitions", "1"]
 
 
@@ -23,7 +23,7 @@ class Base:
         self.urdf = pathlib.Path(shutil.copy(robots / "arm6.urdf", good))
         self.project = pathlib.Path(shutil.copy(robots / "arm6_project.yaml", good))
         self.recording, self.out = good / "recording", good / "out"
-        # Clocks that agree, so that rows of the log and frames of the cameras belong together.
+        # The clocks agree, so that rows of the log and frames of the cameras belong together.
         self.run("simulate", self.project, "-o", self.recording, "--arm-postures", "12",
                  "--random-postures", "1", "--repetitions", "1", "--least-lag-s", "0",
                  "--largest-lag-s", "0", "--drift-ppm", "0")
@@ -52,7 +52,7 @@ class Base:
                          "knock_mm": 5, "gaps_per_minute": 3, "swaps_per_minute": 1}
         self.full_project = full_project(self.urdf)
         self.design = good / "design.yaml"
-        self.design.write_text(json.dumps(  # `plan` takes no joints that are moved by rods
+        self.design.write_text(json.dumps(  # `plan` does not support joints that rods move
             {key: value for key, value in self.full_project.items() if key != "linkages"}))
         self.run("assess", self.design, "--postures", self.postures)
 
@@ -159,7 +159,7 @@ def bad_urdfs(text):
                                 f'<limit lower="-1" upper="1" velocity="1" effort="10"/>{more}</joint>')
     chain = lambda n: ('<robot name="r"><link name="b0"/>' + "".join(joint(k) for k in range(1, n + 1)) +
                        "</robot>")
-    # As children of the tool, so that the project's names are there.
+    # The chain is below the tool, so that the names of the project exist.
     serial = lambda n: text.replace("</robot>", '<link name="b0"/><joint name="c0" type="fixed">'
                                     '<parent link="tool"/><child link="b0"/></joint>' +
                                     chain(n).split('<link name="b0"/>')[1])

@@ -94,7 +94,7 @@ class Laboratory:
             self.calibration = [t for t, trial in copy.trials.items()
                                 if trial["kind"] == "calibration"]
             self.experiment = copy.trials
-            self.moving = []  # joint, trial: a joint that the trial exercises
+            self.moving = []  # pairs of a joint and a trial that exercises it
             self.loaded = []  # joints with torque sensors that are loaded
             still, loads = {}, {}
             for trial in self.calibration:
@@ -109,7 +109,8 @@ class Laboratory:
                         torques = [x for x in torques if not math.isnan(x)]
                         if torques:
                             loads[joint] = max(loads.get(joint, 0), max(torques) - min(torques))
-            # 30 N.m of a robot of 100 kg, less of a small one: a third of what its most loaded joint carries.
+            # The limit is 30 N.m for a robot of 100 kg. For a small one it is a third of the load
+            # of its most loaded joint.
             self.largest_load = max(loads.values(), default=0)
             self.loaded = [joint for joint, spread in loads.items() if spread > min(30, self.largest_load / 3)]
         self.clusters = {cluster["name"]: len(cluster["positions_mm"])
@@ -269,7 +270,7 @@ def declared_faults(lab, draw):
                declare(trial, "support", feet))
     limbs = [t for t in lab.calibration if "head" not in t]
     if all(lab.experiment[t]["chains"] == lab.experiment[limbs[0]]["chains"] for t in limbs):
-        limbs = []  # one arm or snake
+        limbs = []  # a single arm or a snake
     for trial in draw.sample(limbs, min(2, len(limbs))):
         mine = lab.experiment[trial]["chains"]
         other = draw.choice([lab.experiment[t]["chains"] for t in limbs
@@ -287,7 +288,7 @@ def declared_faults(lab, draw):
 
 
 def torque_faults(lab, draw):
-    if len(lab.loaded) < 3:  # a robot without torque sensors
+    if len(lab.loaded) < 3:  # the robot has no torque sensors
         return
     every = lab.trials
     one = lambda: draw.choice(lab.loaded)

@@ -33,8 +33,8 @@ except ImportError:
 from laboratory_cases import (  # noqa: E402, pylint: disable=wrong-import-position
     Laboratory, Recording, all_faults)
 
-LIMIT = 1.3  # error over that without a fault
-NAMED = 0.8  # share of the faults
+LIMIT = 1.3  # largest error relative to that without a fault
+NAMED = 0.8  # share of the faults that must be named
 
 
 def sentences(done, out):

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds the Debian packages twice, installs them into a bare Debian 12 and runs what they hold there.
+# Builds the Debian packages twice, installs them into a bare Debian 12 and runs their contents
+# there.
 #   run.sh BUILD WORK CHAIN
-# CHAIN is what `elastocal demo` wrote. Ends with 77, which ctest calls skipped, where no Debian can be made.
+# CHAIN is a folder of `elastocal demo`. Ends with 77, which ctest reports as skipped, if no Debian
+# can be made.
 set -euo pipefail
 build="$1" work="$2" chain="$3"
 
@@ -22,14 +24,14 @@ pack() {
   cpack --config "$build/CPackConfig.cmake" -B "$work/$1" >"$work/$1.log" 2>&1 || { cat "$work/$1.log"; return 1; }
 }
 pack first &
-sleep 1.5  # what depends on the time of day differs
+sleep 1.5  # so that all that depends on the time of day differs
 pack second
 wait $!
 for package in "$work"/first/*.deb; do
   cmp "$package" "$work/second/${package##*/}" || { echo "the same files gave other bytes"; exit 1; }
 done
 mv "$work"/first/*.deb "$work/given"
-rm -f "$work"/given/elastocal-mpi_*.deb  # MPI brings a hundred packages
+rm -f "$work"/given/elastocal-mpi_*.deb  # MPI would bring a hundred packages
 
 cat >"$work/given/inside" <<'INSIDE'
 set -e
@@ -60,7 +62,8 @@ mount --bind '$chain' "\$1/mnt"
 chroot "\$1" env DEBIAN_FRONTEND=noninteractive bash /media/inside || { echo \$? >'$work/status'; exit 1; }
 HOOK
 
-# The hook runs in the finished root, with mounts of its own. What fails before it is the network, not the packages.
+# The hook runs in the finished root, which has mounts of its own. Failures before it come from the
+# network, not from the packages.
 status=0
 timeout 450 mmdebstrap --quiet --variant=minbase --mode=root --skip=cleanup --dpkgopt=force-unsafe-io \
   --customize-hook="unshare --mount bash -e '$work/hook' \"\$1\"" \

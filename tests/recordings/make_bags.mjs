@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes bag_*.mcap, tf.mcap, messages.json and transforms.json with @mcap/core and @foxglove/rosmsg2-serialization, which
-// are other people's, for src/elastocal/readers/bags_test.cpp: node make_bags.mjs FOLDER, where
-// npm has installed these two, @foxglove/rosmsg and @foxglove/rosmsg-msgs-common, and
-// /usr/bin/python3 has lz4 and zstandard.
+// Writes bag_*.mcap, tf.mcap, messages.json and transforms.json for src/elastocal/readers/bags_test.cpp:
+//   node make_bags.mjs FOLDER
+// It uses other people's libraries: npm must have installed @mcap/core, @foxglove/rosmsg2-serialization,
+// @foxglove/rosmsg and @foxglove/rosmsg-msgs-common, and /usr/bin/python3 must have lz4 and zstandard.
 import { spawnSync } from "node:child_process";
 import { createRequire } from "node:module";
 import { writeFileSync } from "node:fs";
@@ -41,8 +41,8 @@ const writers = Object.fromEntries(
   ]),
 );
 
-// 10 joint states at 50 Hz, the hand's pose at 100 Hz without its message 7, and what is not read. In `transforms`, the
-// poses are those of frame cameras/LHAND in frame cameras, beside links of a robot that stands in the room.
+// 10 joint states at 50 Hz, the hand's pose at 100 Hz without its message 7, and topics that are not read. In `transforms`,
+// the poses are those of frame cameras/LHAND in frame cameras, among links of a robot that stands in the room.
 const START = 1700000000n * 1000000000n;
 const stamp = (ns) => ({ sec: Number(ns / 1000000000n), nanosec: Number(ns % 1000000000n) });
 const messages = [], transforms = [];

@@ -4,9 +4,9 @@
 
   vary_humanoid.py OUTPUT.urdf [--scale 0.5] [--legs 5|6|7] [--ankle-deg 30]
 
-Lengths are multiplied by the scale s, masses by s^3, inertias by s^5 and efforts by s^4, as of one material
-that carries its own weight. Legs of 5 joints have no joint about the vertical at the hip, those of 7 a second
-one in the thigh.
+Lengths are multiplied by the scale s, masses by s^3, inertias by s^5 and efforts by s^4, as for one material
+that carries its own weight. Legs of 5 joints have no joint about the vertical at the hip. Legs of 7 have a
+second one in the thigh.
 """
 
 import argparse
@@ -56,7 +56,7 @@ def fix_hip_yaw(robot, side):
 
 
 def split_thigh(robot, side):
-    """Half way down the thigh, a joint about it; what is below gets 0.4 of its mass."""
+    """Adds a joint half-way down the thigh that turns its lower part, which gets 0.4 of the mass."""
     knee = named(robot, "joint", f"leg_{side}_4_joint")
     upper = named(robot, "link", knee.find("parent").get("link"))
     height = float(knee.find("origin").get("xyz").split()[2])

@@ -16,7 +16,7 @@ rng = np.random.default_rng(2023)
 print("order,cutoff_hz,rate_hz,signal,filtered")
 for order, cutoff, rate, count in CASES:
     t = np.arange(count) / rate
-    # A slow motion with an offset and a trend, so that the ends matter, and noise.
+    # A slow motion with noise, and with an offset and a trend so that the ends matter.
     signal = 1.0 + 0.3 * t + np.sin(2 * np.pi * 0.7 * t + 0.4) + 0.05 * rng.standard_normal(count)
     filtered = sosfiltfilt(butter(order, cutoff, fs=rate, output="sos"), signal)
     for x, y in zip(signal, filtered):

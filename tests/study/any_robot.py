@@ -40,7 +40,7 @@ def run_step(program, step, values, limit_s):
 
 
 def held_out(folder):
-    """Root of the mean square of held-out motions [mm], before and after, over all groups."""
+    """Root mean square error of held-out motions [mm] over all groups, before and after."""
     summary = folder / "out" / "summary.json"
     if not summary.exists():
         return ""

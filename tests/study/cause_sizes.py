@@ -58,7 +58,7 @@ def rpy_of(turn):
 
 
 def chain_of(file, tip):
-    """Rows as in foreign_arm.py. What is not on the chain stands at zero and counts as mass of the link that carries it."""
+    """Rows as in foreign_arm.py. Other joints stand at zero, with their links as mass of the link before."""
     root = xml.parse(file).getroot()
     numbers = lambda e, name: np.array([float(x) for x in (e.get(name) if e is not None and e.get(name) else "0 0 0").split()])
     pose = lambda e: (from_rpy(numbers(e, "rpy")), numbers(e, "xyz"))
@@ -123,7 +123,7 @@ class Robot(causes.Robot):
 
 
 def seen_by(kind, robot, q, rng):
-    """As in foreign_causes.py, and more kinds."""
+    """Like seen_by of foreign_causes.py, with more kinds."""
     if kind in ("tracker", "gauges"):
         return causes.seen_by(kind, robot, q, rng)
     (turn, place), rows = UPRIGHT, []
@@ -181,20 +181,20 @@ class Bench:
             print("   ", *words, flush=True)
 
     def parameters(self):
-        """Value and sd by name, and how many sds an interval of 95 % has to either side."""
+        """Value and sd by name, and half of a 95 % interval in sds."""
         text = (self.last / "calibration.yaml").read_text()
         found = re.findall(r"name: ([\w.]+), unit: \S+, value: (\S+), sd: ([^\s,}]+)", text)
         return {n: (float(v), float(s)) for n, v, s in found}, float(re.search(r"interval_95_in_sd: (\S+)", text).group(1))
 
     def error(self, robot, frames_of, seed):
-        """mm, of a model in 80 fresh postures: base and points placed by 40 others, one motion."""
+        """Error (mm) of a model in 80 fresh postures of one motion. 40 others place base and points."""
         q = robot.postures(120, 5000 + seed)
         pairs = list(zip([frames_of(row) for row in q], robot.points(q)))
         last = len(robot.joints) - 1
         return placed_error(pairs[:40], pairs[40:], [last] * 3, robot.nominal[:3], (np.eye(3), np.zeros(3)))
 
     def model(self, joints, anew=False):
-        """Frames by the model at run time; `anew`: by one that has seen no other posture."""
+        """Frames by the model at run time. `anew`: each posture by a model that has seen no other."""
         import elastocal  # pylint: disable=import-outside-toplevel,import-error
         runtime = elastocal.Runtime(self.last)
 
@@ -206,7 +206,7 @@ class Bench:
         return frames
 
     def exported(self, robot):
-        """The calibrated URDF, in which joints have the axes and order of the nominal one."""
+        """The calibrated URDF, whose joints have the axes and order of the nominal one."""
         file = next(self.last.glob("*_calibrated.urdf"), None)
         if file is None:
             return None

@@ -5,13 +5,13 @@
     check_days.py PROGRAM PROJECT [--robots 20] [--first 1] [--turn-deg 0.2] [--postures 8] [--work DIR]
 
 A robot with errors that the estimator does not model (`simulate`) is calibrated with the default
-settings. Another day, each of its chains takes a few other postures (on another place, by another
-clock, with other noise): nothing should be said to have moved. Then one joint is turned, as after its
-motor was remounted, and it should be named. Besides, the calibration's markers of one link, drawn with the seed, are put
-elsewhere, as if they had been fixed anew since (1 mm each) or moved as one piece (1 mm and 10 mrad): no joint should be
-said to have moved. The joint is drawn with the seed of the robot among those
-whose zero the postures tell. At last both days together and the second one updating the first
-(`calibrate --prior`) are compared on a third one. Everything follows from the seeds.
+settings. On another day, each chain takes a few other postures (at another place, with another
+clock and other noise): nothing should be said to have moved. Then one joint is turned, as after its
+motor was remounted, and should be named. The seed of the robot draws it among the joints whose zero
+the postures tell. The seed also draws a link whose markers are displaced in the calibration, as if
+fixed anew since (1 mm each) or moved as one piece (1 mm and 10 mrad): no joint should be said to have
+moved. Finally, a calibration from both days and the first one updated by the second
+(`calibrate --prior`) are compared on a third day. Everything follows from the seeds.
 """
 
 import argparse
@@ -27,7 +27,7 @@ from compare_pairs import DESIGN, move_markers, run, turn
 
 def few(postures):
     words = list(DESIGN)
-    # Of the head as many as ever: its short trial needs them to find the clock.
+    # The number for the head stays, because its short trial needs these postures to find the clock.
     for option, count in (("--arm-postures", postures), ("--leg-postures", postures)):
         words[words.index(option) + 1] = str(count)
     return words

@@ -8,13 +8,14 @@
 A pair is a robot with errors that the estimator does not model (`simulate`), recorded twice: other
 random postures, places, clocks and noise, the same robot. Both are calibrated with the default
 settings and compared: no joint should be said to have moved. Then one joint of the second recording
-is turned (its logged positions are off by that much in all trials, as after its motor was remounted),
-and it should be named, and alone. The joint is drawn with the seed of the pair among all joints that
-the calibration tells. The unchanged robot is also compared with markers of one link, drawn with the seed too, where
-they were not: each of them fixed anew (1 mm), and all as one piece on a plate that moved (1 mm and 10 mrad, or by each --marker-mm). This is done to
-the second calibration's estimates and nominal places of these markers, which follow their places exactly. No joint
-should be said to have moved; where the plate moved as a joint would have moved it, this link should be named as the other
-explanation. Prints a line for each pair and the counts. Everything follows from the seeds.
+is turned (its logged positions are off by this angle in all trials, as after its motor was remounted),
+and only this joint should be named. The seed of the pair draws it among all joints that the calibration
+tells. The unchanged robot is also compared with displaced markers of one link, which the seed draws too:
+each of them fixed anew (1 mm), or all as one piece on a plate that moved (1 mm and 10 mrad, or by each
+--marker-mm). This changes the second calibration's estimates and nominal places of these markers, which
+follow their places exactly. No joint should be said to have moved. If the plate moved as a joint would
+have moved it, this link should be named as the other explanation. Prints a line for each pair and the
+counts. Everything follows from the seeds.
 """
 
 import argparse
@@ -29,7 +30,7 @@ import shutil
 import subprocess
 import tempfile
 
-# A short experiment: all chains, fewer and quicker postures than the paper's.
+# A short experiment with all chains, and with fewer and quicker postures than the paper's.
 DESIGN = ["--trials", "calibration", "--head-postures", "8", "--arm-postures", "20",
           "--leg-postures", "20", "--move-s", "1.5", "--rest-s", "0.8", "--lead-in-s", "3"]
 
@@ -42,7 +43,7 @@ def run(*words, may_fail=False):
 
 
 def turn(folder, joint, angle):
-    """The joint is turned: from now on its encoder shows `angle` more."""
+    """Turns the joint: from now on its encoder shows `angle` more."""
     for log in folder.glob("*.csv"):
         if log.name.endswith("_waist.csv"):
             continue
@@ -58,7 +59,7 @@ def turn(folder, joint, angle):
 
 
 def displaced(entries, link, draw, rigid, size):
-    """Lines of a calibration.yaml in which the markers of a link are elsewhere."""
+    """Lines of a calibration.yaml with the markers of a link displaced."""
     normal = lambda sd: [draw.gauss(0, sd) for _ in range(3)]
     shift, turn = normal(size), normal(10.0 * size)
     steps = {}
@@ -72,7 +73,7 @@ def displaced(entries, link, draw, rigid, size):
 
 
 def move_markers(source, target, draw, rigid, size=1e-3):
-    """The calibration of `source`, as it would be with the markers of a link elsewhere. Returns the link."""
+    """Writes the calibration of `source` with the markers of a link displaced. Returns the link."""
     target.mkdir(exist_ok=True)
     shutil.copy(source / "covariance.csv", target)
     text = (source / "calibration.yaml").read_text()
@@ -94,7 +95,7 @@ WAYS = {"anew": "fixed anew", "plate": "moved as one piece"}
 
 
 def pair(arguments, seed, scratch):
-    """Joints said to have moved without a change; the joint turned, and those named then."""
+    """Joints that are named without a change, the joint that is turned, and those that are named then."""
     program, project = arguments.program, arguments.project
     a, b = scratch / "a", scratch / "b"
     for folder, day in ((a, 1), (b, 2)):

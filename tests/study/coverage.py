@@ -9,15 +9,15 @@ sensors and imperfect cameras, which the estimator models in part; its axes are 
 them, and its zero offsets are not. So the truth of every parameter of a joint is known: offsets from
 truth.yaml, all lengths and other angles zero. The recording is calibrated with the default settings.
 Prints, for each robot and in all, the share of intervals with the truth in them and the root mean
-square of errors in standard deviations; then how many intervals of the legs' stiffness hold the
-simulator's own (a known wrench on the waist), by axis. With `--motions` the sine trials, moments of which
-share their model error with their neighbours in time, are calibrated from as well. Everything follows from the seeds. PyYAML is needed.
+square of errors in standard deviations; then, by axis, how many intervals of the legs' stiffness hold
+that of the simulator (for a known wrench on the waist). `--motions` also calibrates from the sine trials,
+whose moments share their model error with their neighbours in time. Everything follows from the seeds. PyYAML is needed.
 
 With `--displaced` every axis is displaced and turned in six dimensions. Several sets of parameters then
 describe the same robot. The robot without springs, friction and noise, seen by perfect sensors in other
 and more postures, is calibrated too, which must explain its markers within 2 um (files round to 1 um).
-Of all sets that do, this gives the one that the prior makes most likely, as in the other estimate.
-Compared are the parameters that the data tell there (status `estimated`); of the others, the prior decides.
+Of all sets that do, this gives the one that the prior makes most likely, as in the other estimate. The
+parameters that the data tell there (status `estimated`) are compared; the prior decides on the others.
 """
 
 import argparse
@@ -31,9 +31,9 @@ import yaml
 
 from compare_pairs import DESIGN, run
 
-# All trials, of those for validation that are not sines as little as can be.
+# All trials. Those for validation are as short as possible, except the sines.
 WITH_SINES = ["--random-postures", "1", "--repetitions", "1", *DESIGN[2:]]
-# A rigid robot seen by perfect cameras and sensors.
+# A rigid robot with perfect cameras and sensors.
 EXACT = ["--trials", "calibration", "--head-postures", "20", "--arm-postures", "50", "--leg-postures", "40",
          *DESIGN[8:]]
 for name in ("upper-elasticity-scale", "leg-elasticity-scale", "friction-share", "marker-noise-mm",
@@ -52,7 +52,7 @@ def kind_of(name):
 
 
 def stiffness_of_legs(summary, truth):
-    """Axis and 'inside', 'outside' or 'unknown' of each stiffness; files have N/mm and N/m."""
+    """Axis of each stiffness, and 'inside', 'outside' or 'unknown'. Files have N/mm and N/m."""
     found = []
     for leg in summary["legs"]:
         for i, axis in enumerate(("x", "y", "z", "rx", "ry", "rz")):
@@ -64,7 +64,7 @@ def stiffness_of_legs(summary, truth):
 
 
 def calibrate_from_motions(folder):
-    """Sine trials are for the estimate; other trials for validation are left out."""
+    """Makes the sine trials trials for the estimate, and leaves out other trials for validation."""
     file = folder / "experiment.yaml"
     experiment = yaml.safe_load(file.read_text())
     trials = [trial for trial in experiment["trials"] if trial["kind"] in ("calibration", "sine")]
@@ -75,7 +75,7 @@ def calibrate_from_motions(folder):
 
 
 def true_parameters(arguments, seed, work, joints):
-    """Of the robot that was simulated, rad and m, by name; zero of those that are not displaced."""
+    """Parameters of the simulated robot by name, rad and m; zero if they are not displaced."""
     if not arguments.displaced:
         offsets = {f"{name}.theta": math.radians(float(joint["offset_deg"])) for name, joint in joints.items()}
         return collections.defaultdict(float, offsets)
@@ -93,7 +93,7 @@ def true_parameters(arguments, seed, work, joints):
 
 
 def errors(arguments, seed, work, stiffness):
-    """Kind, error in sds and interval factor of each parameter of geometry; None: refused."""
+    """Kind, error in sds and interval factor of each geometric parameter; None if refused."""
     folder = work / f"robot_{seed}"
     run(arguments.program, "simulate", arguments.project, "-o", folder, "--threads", 1, "--seed", seed,
         *([] if arguments.displaced else ["--length-mm", 0, "--angle-deg", 0]),

@@ -4,8 +4,8 @@
 
 Takes the motions of a folder of `elastocal demo`. Each robot (--seed) plays them, is calibrated, and
 then executes sine.csv as a robot whose controller is nominal, knows the calibrated URDF, or geometry and
-elasticity, with the stabiliser and without. Prints millimetres (rms) of each, and by how much the controller that
-knows all is better. A robot that fell is compared by what it did until then.
+elasticity, with the stabiliser and without. Prints the error of each (rms, mm), and how much better the controller
+is that knows all. The motion of a robot that falls counts until then.
 
 Example: tests/study/deployments.py build/release/bin/elastocal models/talos/project.yaml DEMO --robots 5
 """
@@ -20,7 +20,7 @@ PLACES = ("hands", "swinging_feet", "waist")
 
 
 def deploy(arguments, seed, work):
-    """What deployment.json says of one robot, by (as, stabilised)."""
+    """Results of one robot in deployment.json, by (as, stabilised)."""
     recordings = []
     measured = ["--marker-places-mm", "0.5", "--marker-places-of", *arguments.places_of] if arguments.places_of else []
     for kind in arguments.kinds:

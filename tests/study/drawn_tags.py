@@ -4,7 +4,7 @@
 
   tests/study/drawn_tags.py [--distance-m 1.2]
 
-Prints for each case how many of eight tags were found, and how far their corners are off. A tag of 80 mm before a camera of
+Prints for each case how many of eight tags were found, and the errors of their corners. A tag of 80 mm is before a camera of
 640 x 480 pixels and 500 pixels of focal length, at 0.5 to 0.9 m (10 to 5.6 pixels a cell) or at the distance that is given."""
 import argparse
 import ctypes

@@ -13,8 +13,8 @@ import xml.etree.ElementTree as xml
 import numpy as np
 
 H = np.pi / 2
-# Joint, link, place (m), turn (rpy), axis, largest position (or both limits), effort; mass (kg) and its centre in the
-# link; "prismatic" may follow.
+# Joint, link, place (m), turn (rpy), axis, largest position (or both limits), effort, mass (kg),
+# centre of mass in the link. "prismatic" may follow.
 JOINTS = [
     ("shoulder_pan", "link1", (0, 0, 0.20), (0, 0, 0), (0, 0, 1), 2.8, 180, 6.5, (0.01, 0, 0.09)),
     ("shoulder_lift", "link2", (0.03, 0, 0.16), (-H, 0, 0), (0, 0, 1), 1.9, 180, 7.2, (0, -0.11, 0.02)),
@@ -66,7 +66,7 @@ class Arm:
 
     @classmethod
     def real(cls, seed):
-        """Offsets of 0.2 to 1.5 degrees, links off by 1 to 3 mm and 0.15 degrees, springs of 10 to 100 urad/(N.m)."""
+        """An arm with offsets of 0.2 to 1.5 degrees, link errors of 1 to 3 mm and 0.15 degrees, springs of 10 to 100 urad/(N.m)."""
         rng, arm = np.random.default_rng(seed), cls()
         arm.offset = np.radians(rng.uniform(0.2, 1.5, 7) * rng.choice([-1, 1], 7))
         places = []
@@ -104,7 +104,7 @@ class Arm:
         return frames
 
     def loads(self, frames):
-        """Moments of the weights about the axes, N.m; of slides forces along them, N."""
+        """Moments of the weights about the axes, N.m; for slides, forces along the axes, N."""
         loads = np.zeros(len(frames))
         for k, (turn, place) in enumerate(frames):
             axis = turn @ self.axes[k]
@@ -115,14 +115,14 @@ class Arm:
         return loads
 
     def stands(self, encoders):
-        """Frames of the links with what the joints give way."""
+        """Frames of the links, with the deflection of the joints."""
         bent = np.zeros(len(self.joints))
         for _ in range(4):
             bent = self.compliance * self.loads(self.frames(encoders + self.offset + bent))
         return self.frames(encoders + self.offset + bent)
 
     def seen(self, encoders):
-        """Markers in the base, markers x 3."""
+        """Positions of the markers in the base's frame, markers x 3."""
         frames = self.stands(encoders)
         return np.array([frames[b][1] + frames[b][0] @ p for b, p in zip(self.bodies, self.markers)])
 
@@ -180,8 +180,8 @@ def write(file, q, points):
 
 
 def placed_error(fitted, judged, bodies, start, base=UPRIGHT):
-    """rms distance (mm) of real points from a model whose base and points are placed by `fitted`. Both lists have, by
-    posture, frames of the model's links and the real points; `start`: points in the links `bodies`."""
+    """rms distance (mm) of real points from a model whose base and points the postures `fitted` place. Both lists have,
+    for each posture, frames of the model's links and the real points. `start`: points in the links `bodies`."""
     (turn, place), own = base, start.copy()
     for _ in range(12):
         rows, left = [], []
@@ -226,7 +226,7 @@ class Study:
         return json.loads((self.work / name / "summary.json").read_text())
 
     def urdf_of(self, name):
-        """The links of the exported URDF; None where none was exported."""
+        """The links of the exported URDF; None if none was exported."""
         file = self.work / name / "arm_calibrated.urdf"
         return Arm.of_urdf(file).frames if file.exists() else None
 
@@ -242,7 +242,7 @@ def quaternion(turn):
 
 
 def poses_of(arm, q, rng, base=UPRIGHT):
-    """What a laser tracker sees of a body on the hand: 50 um and 0.2 mrad of noise."""
+    """Poses of a body on the hand by a laser tracker, with noise of 50 um and 0.2 mrad."""
     body, poses = (turned(np.array([0.1, 0.2, 0.3])), np.array([0.1, 0.02, 0.03])), []
     for row in q:
         hand = arm.stands(row)[6]

@@ -22,7 +22,7 @@ from foreign_arm import (  # noqa: E402, pylint: disable=wrong-import-position
     JOINTS, UPRIGHT, Arm, Study, project, quaternion, turned, urdf)
 
 H = np.pi / 2
-# As in foreign_arm.py: joint, link, place, turn, axis, largest position, effort; mass and its centre. Three parallel axes.
+# The columns are those of foreign_arm.py. Three axes are parallel.
 SIX = [
     ("base_pan", "l1", (0, 0, 0.16), (0, 0, 0), (0, 0, 1), 3.0, 150, 7.0, (0, 0.02, 0.0)),
     ("shoulder", "l2", (0, 0.14, 0), (0, 0, 0), (0, 1, 0), 2.2, 150, 9.0, (0, 0.02, 0.22)),
@@ -31,7 +31,7 @@ SIX = [
     ("wrist_2", "l5", (0, 0.10, 0), (0, 0, 0), (0, 0, 1), 2.8, 40, 1.6, (0, 0, 0.08)),
     ("wrist_3", "l6", (0, 0, 0.10), (0, 0, 0), (0, 1, 0), 2.8, 40, 0.9, (0.01, 0.06, 0)),
 ]
-# A trunk that yaws and pitches carries it. The waist stands still on legs that are not there.
+# A trunk that yaws and pitches carries the arm. The waist stands still; legs are not modelled.
 TRUNK = [
     ("waist_yaw", "t1", (0, 0, 0.05), (0, 0, 0), (0, 0, 1), 1.2, 150, 3.0, (0.01, 0, 0.05)),
     ("waist_pitch", "t2", (0, 0, 0.08), (0, 0, 0), (0, 1, 0), 0.6, 200, 14.0, (0.02, 0, 0.22)),
@@ -41,7 +41,7 @@ TRUNK = [
     ("elbow", "a4", (0.02, 0, -0.13), (0, 0, 0), (0, 1, 0), 1.3, 40, 1.2, (0, 0, -0.08)),
     ("wrist", "a5", (-0.02, 0, -0.24), (0, 0, 0), (0, 0, 1), 2.2, 20, 0.8, (0, 0.01, -0.06)),
 ]
-# The nut of its ball screw with splines turns and lifts the tool.
+# The nut of the ball screw with splines turns the tool and lifts it.
 SCARA = [
     ("pan", "s1", (0, 0, 0.36), (0, 0, 0), (0, 0, 1), 2.2, 90, 6.0, (0.15, 0, 0)),
     ("elbow", "s2", (0.32, 0, 0.04), (0, 0, 0), (0, 0, 1), 2.3, 60, 4.0, (0.13, 0, 0.03)),
@@ -64,7 +64,7 @@ def scaled(joints, scale):
 
 
 class Robot(Arm):
-    """An arm with one cause. Encoders show what the cause leaves of the joints' positions."""
+    """An arm with one cause. Encoders show the joints' positions less the cause's effect."""
 
     def __init__(self, kind, cause, seed, joint=None):
         table, scale, softness = ARMS[kind]
@@ -81,7 +81,7 @@ class Robot(Arm):
         self.compliance = softness * rng.uniform(10e-6, 60e-6, count)
         self.masses = self.masses * (1 + 0.02 * rng.normal(size=count))
         self.markers = near + rng.uniform(-4e-3, 4e-3, near.shape)
-        self.joint = int(rng.integers(count))  # that the cause is in
+        self.joint = int(rng.integers(count))  # the joint with the cause
         if cause == "coupling":
             self.joint = max(1, self.joint)
         if joint is not None:
@@ -100,7 +100,7 @@ class Robot(Arm):
                 "coupling": f"{name}.coupling_{self.joints[self.joint - 1][0]}"}.get(self.cause, f"{name}.{self.cause}")
 
     def errors(self, q, before):
-        """By how much joints are beyond what encoders show."""
+        """Positions of the joints minus those of the encoders."""
         k, error = self.joint, np.zeros(len(q))
         if self.cause == "eccentricity":
             error[k] = self.size * np.sin(q[k] + self.phase)
@@ -117,7 +117,7 @@ class Robot(Arm):
 
     def links(self, rows):
         """Frames of the links in the base's frame, posture by posture, each reached from the one before."""
-        before = rows[0]  # nobody knows how the first one was reached: there it is in the middle of the play
+        before = rows[0]  # the way to the first posture is unknown: it counts as in the middle of the play
         for q in rows:
             frames = self.stands(q + self.errors(q, before))
             if self.cause == "suspension":
@@ -155,7 +155,7 @@ TIPS, WALLS = range(3), ("floor", "wall_x", "wall_y")
 
 
 def seen_by(kind, robot, q, rng):
-    """Names of columns, and rows. rng None: no noise."""
+    """Names of columns, and rows; without noise if rng is None."""
     noise = (lambda size, sd: rng.normal(size=size) * sd) if rng else (lambda size, sd: np.zeros(size))
     turn, place = UPRIGHT
     rows, base = [], robot.markers
@@ -200,7 +200,7 @@ def project_of(kind, robot):
 
 
 def rms_fresh(study, kind, file, folder, fresh):
-    """mm, of fresh postures without noise; frozen, or with the surroundings registered anew."""
+    """Error (mm) in fresh postures without noise; frozen, or with the surroundings registered anew."""
     out = study.work / "validation.json"
     done = study.run("validate", file, "--calibration", folder, "--recording", fresh, "--json", out,
                      *(["--frozen"] if kind == "markers" else ["--refit", "table"]))
@@ -228,7 +228,7 @@ def calibrated(study, kind, robot, seed, extra=""):
 
 
 def diagnosed(study, folder):
-    """What is chosen, and all that is significant by itself."""
+    """The chosen causes, and all that are significant alone."""
     out = folder / "diagnosis.json"
     out.unlink(missing_ok=True)
     done = study.run("diagnose", folder, "--json", out)

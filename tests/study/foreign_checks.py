@@ -23,7 +23,7 @@ ELSEWHERE = (turned(np.array((0.01, 0.3, 1.1))) @ UPRIGHT[0], UPRIGHT[1] + np.ar
 
 
 class OneArm:
-    """Calibrated from 50 postures, and as it is on another day."""
+    """An arm that is calibrated from 50 postures, and recorded on another day."""
 
     def __init__(self, study, seed):
         self.study, self.seed = study, seed
@@ -49,7 +49,7 @@ def moved(found):
 
 
 def mistakes(one):
-    """Name, postures, poses, and what one sentence should have."""
+    """Name, postures, poses, and the words that one sentence should have."""
     row = one.seen()
     row[3, 0] += 0.01
     scale = one.seen()
@@ -64,7 +64,7 @@ def mistakes(one):
 
 
 def update(one):
-    """mm on 60 other postures: the first calibration, updated by ten postures, these ten alone, both tables together."""
+    """Errors (mm) in 60 other postures: of the first calibration, updated by ten, from these ten alone, from both tables."""
     ten = one.table(postures(10, 2000 + one.seed), ELSEWHERE, "ten.csv")
     judge = one.table(postures(60, 3000 + one.seed), ELSEWHERE, "judge.csv")
     errors = []

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Faults in tables and trials of invented robots: what the program says of each, and what it deploys.
 
-Robots, noise and faults are of foreign_robots.py and this file, which share nothing with the program. `--seed` draws other
+Robots, noise and faults are those of foreign_robots.py and this file, which share no code with the program. `--seed` draws other
 joints, sizes and rows. A line has the exit code, whether one sentence names the fault ("named"), and the error of the
 exported URDF over that of the recording without the fault.
 """
@@ -208,7 +208,7 @@ def _(case):
 
 @fault(TABLES, "commanded: a dead band of 2 mrad")
 def _(case):
-    dead = np.random.default_rng([case.seed, 1])  # that of the seed alone drew the postures
+    dead = np.random.default_rng([case.seed, 1])  # the generator of the seed alone drew the postures
     case.again(bend=lambda j, q, tau: 0 if j == "rise" else dead.uniform(-2e-3, 2e-3, len(tau[j])))
     return "", "noise|commanded"
 
@@ -361,7 +361,7 @@ def calibrate(program, case, folder):
 
 
 def sentences(said):
-    """Without what every run says of its sizes and of axes that are no longer parallel."""
+    """The sentences without those of every run on its sizes and on axes that are no longer parallel."""
     lines = [l for l in said.replace("\r", "\n").splitlines() if re.match(r"Verdict|Not used|elastocal: (warning|error)", l)]
     return [l for l in lines if "inverse kinematics" not in l and "furthest from nominal" not in l and "is written" not in l]
 

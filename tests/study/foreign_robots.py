@@ -155,7 +155,7 @@ class Lab:
         return {j: rng.uniform((a + b) / 2 - share * (b - a) / 2, (a + b) / 2 + share * (b - a) / 2, n) for j, (a, b) in self.limits.items()}
 
     def loads(self, q, payload=None):
-        """Torque of gravity about each axis; `payload` (kg, m) is on the last tip."""
+        """Torque of gravity about each axis. `payload` (kg, m) is on the last tip."""
         poses, down = self.true.links(q), np.array([0, 0, -9.81])
         weight = {l: (m, m * (poses[l][1] + poses[l][0] @ c)) for l, (m, c) in self.mass.items()}
         if payload:
@@ -171,7 +171,7 @@ class Lab:
         return tau
 
     def seen(self, q, rng, payload=None, bend=None, moved=None, noise=1.5e-4):
-        """Markers in the cameras' frame; `bend(joint, q, tau)` adds to a joint, `moved` gives other places of markers."""
+        """Markers in the cameras' frame. `bend(joint, q, tau)` is added to a joint; `moved` has other places of markers."""
         tau = self.loads(q, payload)
         real = {j: v + self.springs[j] * tau[j] + (bend(j, q, tau) if bend else 0) for j, v in q.items()}
         poses, out, bias = self.true.links(real), {}, {}
@@ -179,7 +179,7 @@ class Lab:
             R, p = poses[link]
             at = np.broadcast_to((moved or {}).get(m, self.places[m]), p.shape)
             at = (np.einsum("nij,nj->ni", R, at) + p) @ self.cameras[0].T + self.cameras[1]
-            if link not in bias:  # slow in space, the same for a whole body
+            if link not in bias:  # varies slowly in space and is the same for a whole body
                 bias[link] = 1.2e-4 * np.sin(5 * at @ rng.normal(0, 1, (3, 3)))
             out[m] = at + bias[link] + rng.normal(0, noise, at.shape)
         return out
@@ -193,7 +193,7 @@ class Lab:
         return {"M": self.seen(q, rng, **world), "Q": self.encoders(q, rng)}
 
     def motion(self, kind, moving, n, rng):
-        """Rest to rest at 100 Hz, or sines; joints that are not of the trial's chains keep their places."""
+        """A motion from rest to rest at 100 Hz, or of sines. Joints that are not on the trial's chains stand still."""
         goals = self.draw(n, rng, 0.8)
         if kind == "sine":
             t, q = np.arange(2400) / 100, {}
@@ -222,7 +222,7 @@ class Lab:
         return out
 
     def error(self, text, seed=99, n=120):
-        """rms (mm) of places on the measured links by another URDF, whose root and places are fitted, without loads."""
+        """rms error (mm) of places on the measured links by another URDF without loads, whose root and places are fitted."""
         model, q = Model(text), self.draw(n, np.random.default_rng(seed))
         truth, other = self.true.links(q), model.links(q)
         links = sorted({l for l in self.link_of.values()} - {self.nominal.root})
@@ -255,7 +255,7 @@ class Case:
         self.lab, self.seed, self.count = lab, seed, count
         self.rng = np.random.default_rng([seed, zlib.crc32(name.encode())])
         self.joints = list(self.rng.permutation(lab.turning))
-        self.row = int(count * self.rng.uniform(0.3, 0.65))  # from here on
+        self.row = int(count * self.rng.uniform(0.3, 0.65))  # the fault begins here
         self.few = np.sort(self.rng.choice(np.arange(1, count), 7, replace=False))
         self.trials = lab.trials(seed) if trials else None
         if not trials:

@@ -78,7 +78,7 @@ def faults(study):
 
 
 def left_out(study, name):
-    """mm, by the model with compensation and by the URDF alone, on postures that were left out."""
+    """Errors (mm) in held-out postures, of the model with compensation and of the URDF alone."""
     contact = study.figures(name)["contact"]
     of = lambda figures: next((i["position_mm"] for i in figures.get("instruments", []) if i["name"] == "lt"), float("nan"))
     return of(contact["kfold"]), of(contact.get("urdf_alone", {}))

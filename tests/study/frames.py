@@ -5,8 +5,8 @@
     frames.py URDF TRUTH FOLDER...
 
 URDF is the robot description, TRUTH the truth.yaml of `simulate`, a FOLDER is one of `calibrate -o`. In 100 random
-postures, springs aside: root mean square of the error in the frame of the root link, of the nominal URDF and of the
-calibrated one, and what `frames` of summary.json expects.
+postures, without springs: root mean square of the error in the frame of the root link, of the nominal URDF and of the
+calibrated one, and the error that `frames` of summary.json expects.
 """
 
 import json
@@ -37,7 +37,7 @@ def read(path):
 
 
 def difference(a, b):
-    """mm and degrees."""
+    """Difference of two poses in mm and degrees."""
     R = mat_mul(transpose(a[0]), b[0])
     angle = math.acos(max(-1.0, min(1.0, (sum(R[k][k] for k in range(3)) - 1.0) / 2.0)))
     return 1e3 * math.dist(a[1], b[1]), math.degrees(angle)

@@ -59,7 +59,7 @@ def start(call: str, words: list[str]) -> subprocess.Popen:
 
 
 def seconds_to_end(call: str, words: list[str], after: float) -> float:
-    """From the signal to the end; negative where the call was over before."""
+    """Seconds from the signal to the end; negative if the call was over before."""
     child = start(call, words)
     time.sleep(after)
     sent = time.monotonic()

@@ -21,11 +21,11 @@ import numpy
 import yaml
 
 FEET = {"left": "left_sole_link", "right": "right_sole_link"}
-APART = {"left": -0.2, "right": 0.2}  # of the other foot, along y [m]
+APART = {"left": -0.2, "right": 0.2}  # place of the other foot along y [m]
 
 
 def displacements(robot, links, unit):
-    """pictures x links x 6, m and rad: see playback.cpp."""
+    """Displacements as pictures x links x 6, m and rad: see playback.cpp."""
     packed = zlib.decompress(base64.b64decode(robot["displacement"]))
     at, before, pictures = 0, [0] * (6 * links), []
     for _ in range(robot["pictures"]):

@@ -5,8 +5,8 @@
   linkage_study.py --program build/release/bin/elastocal --seeds 10 --work /tmp/linkages
 
 For each seed the invented pair of legs (tests/robots/linked_biped_project.yaml), with knees by actuators and
-ankles by two rods, is simulated twice. With --matched, the truth has the form of the model: counted is how often the
-95 % intervals of estimated parameters hold. On MuJoCo's robot, errors on held-out motions are compared: not
+ankles by two rods, is simulated twice. With --matched, the truth has the form of the model, and the program counts how
+often the 95 % intervals of estimated parameters hold. On MuJoCo's robot, errors on held-out motions are compared: not
 calibrated, calibrated with exact rods, and with the rods. PyYAML is needed.
 """
 
@@ -30,7 +30,7 @@ def project_with(exact, work):
     """The project, with exact rods if asked for."""
     document = yaml.safe_load(ROBOT.read_text())
     document["robot"]["urdf"] = str(ROBOT.parent / document["robot"]["urdf"])
-    # The simulated lags are 2 to 4 s; repetitions of one motion look alike at their period.
+    # The simulated lags are 2 to 4 s. A lag by one period of a motion would look alike.
     document["measurement"] = {"longest_lag_s": 4.5}
     for linkage in document["linkages"]:
         for rod in linkage["rods"]:
@@ -47,7 +47,7 @@ def motors(project):
 
 
 def intervals(out, truth, of_motors, counts):
-    """Adds how many intervals of estimated parameters hold the truth."""
+    """Adds the number of intervals of estimated parameters that hold the truth."""
     calibration = yaml.safe_load((out / "calibration.yaml").read_text())
     factor = calibration["interval_95_in_sd"]
     for parameter in calibration["parameters"]:

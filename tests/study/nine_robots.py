@@ -37,7 +37,7 @@ NOISE_MM = 0.1
 # --- what the true robot plays and shows ------------------------------------------------------------
 
 def markers_of(project, draw):
-    """Link and true position of each marker; nominal is off by some 3 mm."""
+    """Link and true position of each marker. Nominal positions are off by some 3 mm."""
     found = {}
     for c in project["markers"].get("clusters", []):
         for i, p in enumerate(c["positions_mm"], 1):
@@ -89,7 +89,7 @@ def solve(A, b):
 
 
 def urdf_error_mm(exported, truth, markers, postures):
-    """Root mean square and largest distance, over postures and markers that a joint moves, after
+    """Root mean square and largest distance over postures and markers that a joint moves, with
     the best root frame (Gauss-Newton) and the best marker positions on the links."""
     seen = {m: [] for m, (link, _) in markers.items() if link != truth.root}
     for q in postures:
@@ -102,12 +102,13 @@ def urdf_error_mm(exported, truth, markers, postures):
         A, b = [[0.0] * 6 for _ in range(6)], [0.0] * 6
         squares, largest, count = 0.0, 0.0, 0
         for observations in seen.values():
-            rows = []  # by posture: marker in the link's frame, and its derivatives
+            rows = []  # for each posture: marker in the link's frame, and its derivatives
             for T, p in observations:
                 at_root = apply_inverse(T_root, p)
                 R = transpose(T[0])
                 local = apply_inverse(T, at_root)
-                # A root frame displaced by v and turned by w sees the marker at p - v - w x p.
+                # If the root frame is displaced by v and turned by w, it has the marker at p - v -
+                # w x p.
                 columns = [[-x for x in mat_vec(R, [1.0 * (i == k) for i in range(3)])]
                            for k in range(3)]
                 columns += [mat_vec(R, cross(at_root, [1.0 * (i == k) for i in range(3)]))
@@ -123,7 +124,7 @@ def urdf_error_mm(exported, truth, markers, postures):
                     b[a] -= sum(x * y for x, y in zip(e[a + 1], e[0]))
                     for c in range(6):
                         A[a][c] += sum(x * y for x, y in zip(e[a + 1], e[c + 1]))
-        for a in range(6):  # a robot with a single free axis leaves directions of the root open
+        for a in range(6):  # a single free axis leaves directions of the root undetermined
             A[a][a] += 1e-9 * count
         x = solve(A, b)
         T_root = times(T_root, (rotation(x[3:]), x[:3]))
@@ -182,8 +183,8 @@ SIMULATION = {"upper_geometry_scale": 1, "leg_geometry_scale": 1, "marker_noise_
 
 
 def simulate(program, folder, xml, project, seed):
-    """A robot that stands on its feet in the program's own simulator; its truth, its markers and
-    postures that it took in trials for validation."""
+    """Simulates a robot that stands on its feet in the program's own simulator. Returns its truth,
+    its markers and its postures in trials for validation."""
     folder.mkdir(parents=True, exist_ok=True)
     ET.ElementTree(xml).write(folder / "robot.urdf")
     (folder / "project.yaml").write_text(
@@ -281,7 +282,7 @@ def main():
             folder = args.work / (name + "_standing" * args.standing) / level
             nominal = perturbed(xml, level, draw)
             for step in ("first", "again"):
-                # The second time, the exported URDF is nominal, after repairs.
+                # In the second step, the exported URDF is the nominal one, as after repairs.
                 if args.standing:
                     recorded = args.work / (name + "_recorded") / step
                     if step == "again":

@@ -5,7 +5,7 @@
     open_frames.py FOLDER...
 
 A FOLDER is one of `calibrate -o` for models/talos/project.yaml, with the default prior (0.5 degrees and 1 mm, as widened).
-1: as before the recording. Of the root link, the mean of what its three joints are displaced by along their axes (`r`).
+1 means: as before the recording. For the root link, it is the mean displacement of its three joints along their axes (`r`).
 """
 import csv
 import math

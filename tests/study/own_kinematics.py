@@ -99,7 +99,7 @@ class Robot:
         return [j for j in self.joints if j["moves"]]
 
     def positions(self, encoders):
-        """Of all joints, also those that mimic one that moves; a true robot has errors of zero."""
+        """Positions of all joints, including mimic joints. A true robot has zero errors."""
         q = {}
         for j in self.joints:
             if j["moves"]:

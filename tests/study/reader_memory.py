@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Memory that readers take for large files, beside the size of the file and of what is kept of it.
+"""Memory that readers need for large files, compared with the size of the file and of the data that are kept.
 
   /usr/bin/python3 tests/study/reader_memory.py build/release/bin/elastocal [--mb 300]
 
@@ -16,7 +16,7 @@ import numpy as np
 
 MARKERS, JOINTS = [f"M{i:02d}" for i in range(63)], [f"joint_{i:02d}" for i in range(36)]
 CELLS = [f"{value:.3f}" for value in np.random.default_rng(1).uniform(-2000, 2000, 3 * len(MARKERS))]
-MOST_SAMPLES = 1000000  # of a log, that are read
+MOST_SAMPLES = 1000000  # largest number of samples of a log that are read
 XYZ = [(name, axis) for name in MARKERS for axis in "XYZ"]
 
 
@@ -65,7 +65,8 @@ def joint_log(file, n):
          lambda i: f"{i / 1000:.4f}," + ",".join(CELLS[: len(JOINTS)]) + "\n", n)
 
 
-# Name of the file, how it is made, bytes of a row in it, and numbers of a row that are kept.
+# Name of the file, function that makes it, bytes of a row in it, and numbers that are kept of a
+# row.
 FORMATS = {
     "Qualisys TSV": ("large.tsv", qualisys, 1 + sum(map(len, CELLS)) + len(CELLS), len(CELLS)),
     "Vicon Nexus CSV": ("large.csv", vicon, 10 + sum(map(len, CELLS)) + len(CELLS), len(CELLS)),

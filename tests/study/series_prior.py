@@ -24,7 +24,7 @@ def run(*words) -> int:
 
 
 def error_mm(folder: pathlib.Path) -> float:
-    """NaN for a robot whose recording was refused."""
+    """Held-out error, mm; NaN if the recording was refused."""
     if not (folder / "summary.json").exists():
         return math.nan
     error = json.loads((folder / "summary.json").read_text())["deployed"]["compensated"]["rmse_3d_mm"]

@@ -5,9 +5,9 @@ three virtual robots, simulate, calibrate, without an edit. Prints a table (Mark
 
   standing_robots.py --program build/release/bin/elastocal --work /tmp/robots [NAME or FILE.urdf...]
 
-Files are taken as they are. The URDFs of the names are written here after the published joints, limits and masses, as
-one remembers them; without meshes, and with the shapes that the makers' files have as primitives. They stand for the
-kinds of robots, not for the makers' files.
+Files are taken as they are. For the names, this file writes URDFs from memory after the published joints, limits and
+masses, without meshes, and with primitives for the shapes of the makers' files. They represent kinds of robots, not the
+makers' files.
 """
 
 import argparse
@@ -35,7 +35,7 @@ class Urdf:
             f"{shape}</link>")
 
     def joint(self, parent, child, place, axis, limits, effort, rpy=(0, 0, 0), name=None, mimic=None, kind="revolute"):
-        """`limits`: None for a joint without an end; `axis`: None for a fixed joint."""
+        """`limits` is None for a joint without an end; `axis` is None for a fixed joint."""
         text = (f'<joint name="{name or child + "_joint"}" type="{kind if limits else "continuous"}">' if axis else
                 f'<joint name="{child}_fixed" type="fixed">')
         text += (f'<parent link="{parent}"/><child link="{child}"/><origin xyz="{place[0]} {place[1]} {place[2]}" '
@@ -286,7 +286,7 @@ def run(program, *words, check=True):
 
 
 class GivenUrdf:
-    """A URDF of somebody else."""
+    """A URDF that is given as a file."""
 
     def __init__(self, file):
         self.file, self.name = pathlib.Path(file), pathlib.Path(file).stem
@@ -296,7 +296,7 @@ class GivenUrdf:
 
 
 def take(program, robot, folder):
-    """One line of the table."""
+    """Takes one robot through all steps and returns its line of the table."""
     begin = time.monotonic()
     shutil.rmtree(folder, ignore_errors=True)
     project = folder / "project.yaml"

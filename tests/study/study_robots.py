@@ -15,7 +15,7 @@ LEVELS = ["0", "1e-9", "1e-6", "1e-4", "5e-3", "rounded"]
 # name: joints as (name, type, parent link, xyz, rpy, axis, lower, upper); the child is NAME_link.
 H = math.pi / 2
 INVENTED = {
-    # Consecutive axes that coincide (1-2, 6-7), that are parallel (3-4-5), and that meet (5-6).
+    # Consecutive axes that coincide (1-2, 6-7), are parallel (3-4-5) or meet (5-6).
     "coaxial7": [
         ("j1", "revolute", "base", (0, 0, 0.3), (0, 0, 0), (0, 0, 1), -2.5, 2.5),
         ("j2", "revolute", "j1_link", (0, 0, 0.2), (0, 0, 0), (0, 0, 1), -2.5, 2.5),
@@ -25,7 +25,7 @@ INVENTED = {
         ("j6", "revolute", "j5_link", (0, 0, 0), (0, H, 0), (0, 0, 1), -2.5, 2.5),
         ("j7", "revolute", "j6_link", (0, 0, 0.12), (0, 0, 0), (0, 0, 1), -2.5, 2.5),
     ],
-    # Both legs and the chest hang on one waist joint.
+    # Both legs and the chest are on one waist joint.
     "waist_biped": [
         ("waist", "revolute", "pelvis", (0, 0, -0.05), (0, 0, 0), (0, 0, 1), -1, 1),
         ("chest", "revolute", "pelvis", (0, 0, 0.1), (0, 0, 0), (0, 1, 0), -0.6, 0.6),
@@ -41,7 +41,7 @@ INVENTED = {
             ("ankle_pitch", "knee_link", (0, 0, -0.3), (0, 1, 0), -0.8, 0.8),
             ("ankle_roll", "ankle_pitch_link", (0, 0, 0), (1, 0, 0), -0.5, 0.5))
     ],
-    # Two rails at right angles and a parallel pair of a rail and a revolute axis.
+    # Two rails at right angles, and a rail that is parallel to a revolute axis.
     "rail_arm": [
         ("rail", "prismatic", "frame", (0, 0, 0.1), (0, 0, 0), (1, 0, 0), 0, 1.5),
         ("lift", "prismatic", "rail_link", (0, 0, 0.1), (0, 0, 0), (0, 0, 1), 0, 0.5),
@@ -70,7 +70,7 @@ def invented_urdf(name):
 
 
 def own_project(robot, ends_only):
-    """Clusters on the root, at the ends and (unless `ends_only`) on every third link before."""
+    """A project with clusters on the root, at the ends and (unless `ends_only`) on every third link before these."""
     by_child = {j["child"]: j for j in robot.joints}
     moving = robot.moving()
 
@@ -132,7 +132,7 @@ def perturbed(xml, level, draw):
 
 
 def true_robot(xml, draw):
-    """Origins off by 1 mm and 0.3 degrees, zeros by 0.5 degrees or 0.5 mm (standard deviations)."""
+    """A robot with origins off by 1 mm and 0.3 degrees and zeros by 0.5 degrees or 0.5 mm (standard deviations)."""
     robot = Robot(xml)
     for j in robot.joints:
         if j["kind"] == "fixed":

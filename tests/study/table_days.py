@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""`check` on real touches of TALOS (../shared/data/talos_table_contact): some of the 50 stand for another day, as they were
-measured, with a joint that is off in all of them, and with a joint that is off in one. Prints what was said of them.
+"""`check` on real touches of TALOS (../shared/data/talos_table_contact): some of the 50 represent another day, as they
+were measured, with a joint that is off in all of them, and with a joint that is off in one. Prints the answers.
 
   /usr/bin/python3 tests/study/table_days.py --program build/release/bin/elastocal --work DIR [--draws 8]
 """
@@ -45,7 +45,7 @@ class Touches:
         return self.work / name
 
     def check(self, joint=None, degrees=0.0, only=None):
-        """The dict of `check --json`; `only`: (side, row), else the joint is off in all touches."""
+        """The dict of `check --json`. `only`: (side, row); without it, the joint is off in all touches."""
         tables = []
         for side in SIDES:
             rows = [list(row) for row in self.rest[side]]

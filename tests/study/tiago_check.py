@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """`check` on a real TIAGo (../shared/data/tiago_mocap): `training.csv` is calibrated, and rows of `validation.csv`, measured
-four days earlier, stand for another day: in parts of ten rows and all together, as they are (nothing is known to have
-moved) and with one joint turned, each in turn. Prints what was said of them.
+four days earlier, represent another day: in parts of ten rows and all together, as they are (nothing is known to have
+moved) and with each joint turned in turn. Prints the answers.
 
   tests/study/tiago_check.py PROGRAM FOLDER [--turned-deg 1] [--parts 10] [-- words of check]
 """

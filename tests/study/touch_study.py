@@ -145,7 +145,7 @@ def offsets(arguments, work):
 
 
 def sds(summary):
-    """Standard deviations of zero offsets, degrees: of legs, trunk and arms."""
+    """Standard deviations of the zero offsets of legs, trunk and arms, degrees."""
     groups = {"leg": [], "torso": [], "arm": []}
     for parameter in summary["parameters"]:
         joint, kind = parameter["name"].rsplit(".", 1)

@@ -2,18 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether ten folds of a measured table of markers leave more than noise.
 
-  smooth  What the calibration of each fold leaves of its own postures is predicted for the others by a smooth function of
-          the joints' positions: Gaussian processes over all joints or one, of many widths and sizes. Prints the held-out
-          error without, of the one that is the likeliest in each fold, and of those that do best on what was left out.
-  noise   The calibrated robot stands in the recorded postures, its markers are moved by noise of the sizes that the
-          calibration found, and each such table is calibrated like the measured one. Prints the held-out error of the
-          measured table and of these tables, in which nothing but noise is left.
+  smooth  For each fold, a smooth function of the joints' positions is fitted to the residuals of the training postures and
+          predicts those of the others: Gaussian processes over all joints or one, of many widths and sizes. Prints the
+          held-out error without it, with the likeliest one in each fold, and with those that do best on the held-out ones.
+  noise   The calibrated robot takes the recorded postures. Its markers get noise of the sizes that the calibration found,
+          and each such table is calibrated like the measured one. Prints the held-out errors of the measured table and of
+          these tables, which have no other errors than noise.
 
   PYTHONPATH=build/release/python /usr/bin/python3 tests/study/what_is_left.py PART PROJECT TABLE --work DIR
       --columns x1 y1 z1 [--tables 40] [--first 1] [--fold-seeds 1 2 11]
 
---columns: those of the markers (in m), in the order in which the project lists the markers. --first: seed of the first table of
-noise, or of the deal of the folds. Folds are the program's own in the part noise (--fold-seeds).
+--columns: those of the markers (in m), in the project's order of markers. --first: seed of the first table of noise, or of the
+deal of the folds. Folds are the program's own in the part noise (--fold-seeds).
 """
 
 import argparse
@@ -25,13 +25,13 @@ import numpy as np
 
 
 def positions(project, rows):
-    """Of the joints, (rows, joints); joints without a column stand at rest."""
+    """Positions of the joints, (rows, joints). Joints without a column are at rest."""
     rest = dict(zip(project.joints, project.rest))
     return np.array([[float(row.get(joint, rest[joint])) for joint in project.joints] for row in rows])
 
 
 def markers_of(found, project, folder, q):
-    """Where the calibrated robot has its markers, (rows, markers, 3), in the frame of its root link."""
+    """Markers of the calibrated robot in the frame of its root link, (rows, markers, 3)."""
     value = dict(zip(found.parameters, found.values))
     places = {}
     for line in (folder / "calibration.yaml").read_text().splitlines():
@@ -39,7 +39,7 @@ def markers_of(found, project, folder, q):
             name, link = line.split("name: ")[1].split(",")[0], line.split("link: ")[1].split(",")[0]
             nominal = [float(x) for x in line.split("xyz_m: [")[1].split("]")[0].split(",")]
             places[name] = (link, np.array(nominal) + [value.get(f"marker.{name}.{axis}", 0.0) for axis in "xyz"])
-    runtime, points = elastocal.Runtime(folder), []  # one for all rows: it follows the way of each joint
+    runtime, points = elastocal.Runtime(folder), []  # one model for all rows, since it follows the way of each joint
     for row in q:
         poses = runtime.forward(dict(zip(project.joints, row)))["links"]
         points.append([(poses[link] @ [*place, 1.0])[:3] for link, place in (places[name] for name in project.markers)])
@@ -47,7 +47,7 @@ def markers_of(found, project, folder, q):
 
 
 def write(file, rows, columns, points):
-    """The measured table with other places of the markers."""
+    """Writes the measured table with other positions of the markers."""
     with open(file, "w", newline="") as out:
         table = csv.DictWriter(out, rows[0].keys())
         table.writeheader()
@@ -60,7 +60,7 @@ def held_out(project, table, seed):
 
 
 def registered(points, seen):
-    """The first on the second: what turns and displaces it."""
+    """The rotation and displacement that put the first onto the second."""
     a, b = points.reshape(-1, 3), seen.reshape(-1, 3)
     u, _, v = np.linalg.svd((a - a.mean(0)).T @ (b - b.mean(0)))
     turn = v.T @ np.diag([1, 1, np.linalg.det(v.T @ u.T)]) @ u.T
@@ -118,7 +118,8 @@ def noise(project, rows, options):
           + ", ".join(f"{error:.3f}" for _, error in measured)
           + f" mm; noise {sizes['marker_sd_mm']:.3f} mm of a coordinate, {sizes['body_position_sd_mm']:.3f} mm of a body", flush=True)
 
-    # The body's noise is of one marker's size where there is one marker: then it is a part of that marker's.
+    # With one marker, the noise of the body has the size of that marker's noise and is a part of
+    # it.
     body = sizes["body_position_sd_mm"] if points.shape[1] > 1 else 0.0
     fits, errors = [], []
     for seed in range(options.first, options.first + options.tables):

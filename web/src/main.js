@@ -20,20 +20,20 @@ import {signalSection} from './sections/signal.js';
 import {table1Section} from './sections/table1.js';
 import {verdictSection} from './sections/verdict.js';
 
-// In the order in which an engineer asks: can I use it, what is off, can I believe it.
+// The order is that of an engineer's questions: can I use it, what is off, can I believe it.
 const SECTIONS = [
   verdictSection, robotSection, table1Section, modelsSection, deploymentSection, residualsSection, identifiabilitySection,
   signalSection, designSection, motionSection, historySection, findingsSection, reproduceSection,
   missingSection,
 ];
 
-// Of a robot that touched tables there are no markers to show.
+// A robot that touched tables has no markers to show.
 const SECTIONS_OF_TOUCHES = [
   contactVerdictSection, contactSection, table1Section, robotSection, historySection, findingsSection,
   reproduceSection,
 ];
 
-// Of a fleet: which robots need somebody, and what they have in common.
+// For a fleet: which robots need attention, and what robots have in common.
 const SECTIONS_OF_A_FLEET = [
   fleetVerdictSection, fleetRobotsSection, outOfFamilySection, batchesSection, driftSection, familySection, fleetNotesSection,
 ];
@@ -45,7 +45,7 @@ function sectionsOf(report) {
   return report.summary?.contact ? SECTIONS_OF_TOUCHES : SECTIONS;
 }
 
-/** A part that fails says so in its place and leaves the others alone. */
+/** Makes a section. If that fails, a message takes its place and the other sections remain. */
 function build(make, report) {
   try {
     return make(report);
@@ -66,16 +66,16 @@ function header(report) {
 
 const entry = (part) => h('li', {}, h('a', {href: `#${part.id}`}, part.dataset.short));
 
-/** The licences of others' software that is in this page (notices.js puts them into the template). */
+/** The licences of other people's software in this page (notices.js writes them into the template). */
 function licences() {
   const text = document.getElementById('notices').content.textContent;
   return h('details', {id: 'licences'}, h('summary', {}, 'Software of others in this page, and its licences'), h('pre', {}, text));
 }
 
-/** After what stands so far has been painted; in a tab that is not seen, nothing is. */
+/** Waits until the page so far is painted. A hidden tab is not painted, so it does not wait. */
 const painted = () => new Promise((done) => document.hidden ? done() : requestAnimationFrame(() => setTimeout(done)));
 
-/** The robot is seen before the sections below it are made. */
+/** Shows the robot before the sections below it are made. */
 async function show(report) {
   document.title = `${titleOf(report)} – elastocal report`;
   const list = h('ol');

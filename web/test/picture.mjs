@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The top of a report as a PNG: node test/picture.mjs REPORT.html PICTURE.png
+// Saves the top of a report as a PNG: node test/picture.mjs REPORT.html PICTURE.png
 import {resolve} from 'node:path';
 
 import {openBrowser} from './browser/chromium.js';
@@ -9,7 +9,7 @@ const browser = await openBrowser();
 const page = await browser.newPage({viewport: {width: 1280, height: 1180}, colorScheme: 'light'});
 await page.goto(`file://${resolve(report)}`);
 await page.waitForSelector('.viewer[data-ready]');
-// A posture with something to see in it.
+// Choose a posture with something to see.
 await page.focus('#posture');
 for (let i = 0; i < 4; ++i) await page.keyboard.press('ArrowRight');
 await page.evaluate(() => { document.activeElement.blur(); scrollTo(0, 0); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the tests of one folder: node test/run.mjs unit | browser
-// Ends with 77 where a browser is needed and there is none: ctest calls that skipped.
+// Ends with 77 if a browser is needed and missing, which ctest reports as skipped.
 import {spawnSync} from 'node:child_process';
 import {readdirSync} from 'node:fs';
 import {fileURLToPath} from 'node:url';

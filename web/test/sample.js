@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A report made by hand: every section has data, and some names are HTML.
+// A report made by hand. Every section has data, and some names are HTML.
 import {deflateSync} from 'node:zlib';
 
 import {EVIL, joints, markerPositions, markers, stl, urdf, WAIST} from './sample_robot.js';
@@ -100,7 +100,7 @@ function sampleMotion() {
   return {name: 'motion', rows: 3000, columns, margins: {sets: [{name: 'leg', left_out: [{posture: 2, reason: EVIL}]}], margins: {zmp_m: 0.0214, torque_share: 0.31, spheres: `a and ${EVIL}`}}};
 }
 
-/** Pictures of three causes: by a joint's position, by the direction of its motion, by time. */
+/** Pictures of three causes, driven by a joint's position, by the direction of its motion, and by time. */
 function samplePictures() {
   const of = (name, against, unit, xs, curve, curveX) => ({
     name, words: `${name}: 1.2 +- 0.1 mrad`, p_adjusted: 2e-5, against, against_unit: unit, displaced: `displacement of ${name.split('.')[0]}`, unit: 'mrad',
@@ -112,7 +112,7 @@ function samplePictures() {
           of('waist.drift', 'time', 'h', Array.from({length: 60}, (_, i) => i / 30), (x) => 0.5 * (x - 1), line(0, 2))];
 }
 
-/** A byte for each difference from picture to picture, deflated, as the program packs displacements. */
+/** Packs displacements like the program: one byte for each difference between pictures, then deflated. */
 function packed(pictures) {
   const flat = pictures.flatMap((picture, i) => picture.map((x, k) => x - (i > 0 ? pictures[i - 1][k] : 0)));
   return deflateSync(Buffer.from(Int8Array.from(flat).buffer)).toString('base64');
@@ -165,7 +165,7 @@ export function sampleReport() {
   };
 }
 
-/** The built page with a report in it, as the program makes it. */
+/** The built page with a report, as by the program. */
 export function page(template, report) {
   const json = JSON.stringify(report).replaceAll('<', '\\u003c');
   const [before, after] = template.split('"@ELASTOCAL_REPORT_DATA@"');

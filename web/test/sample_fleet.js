@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data of a fleet's page, made by hand: twelve robots of two batches, one unlike the others, one that drifts.
+// Data of a fleet's page, made by hand: twelve robots of two batches. One is unlike the others, and one drifts.
 import {EVIL} from './sample_robot.js';
 
 const session = (robot, number, batch, day, more = {}) => ({

@@ -52,7 +52,7 @@ export function urdf() {
     ${movable.join('')}</robot>`;
 }
 
-/** Pushes a point of a link out to the root link, joint by joint. */
+/** Transforms a point of a link to the root link, joint by joint. */
 function toRoot(link, point, q) {
   const index = JOINTS.findIndex(([, , child]) => child === link);
   if (index < 0) return point;

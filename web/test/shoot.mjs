@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of a report for people to look at: node test/shoot.mjs REPORT.html FOLDER
+// Takes pictures of a report for people to look at: node test/shoot.mjs REPORT.html FOLDER
 import {mkdirSync} from 'node:fs';
 import {resolve} from 'node:path';
 import {openBrowser} from './browser/chromium.js';

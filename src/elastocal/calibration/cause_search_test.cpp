@@ -12,8 +12,9 @@ namespace {
 
 constexpr int kPostures = 80, kRows = 36;
 
-/// A study of one unknown and three causes that displace the first row of each posture: by x, by
-/// almost the same, and by something else. The residuals are noise, and `size` times x.
+/// A study of one unknown and three causes that displace the first row of each posture: the first
+/// by x, its twin by nearly x, the third by something else. The residuals are noise plus `size`
+/// times x.
 LinearStudy MakeStudy(double size) {
   LinearStudy study;
   study.base = 1;
@@ -47,7 +48,8 @@ TEST(SearchCauses, TakesOneOfWhichNoiseHidesMostOfTheGain) {
   ASSERT_TRUE(search.accepted);
   ASSERT_EQ(search.chosen.size(), 1u);
   const CauseFinding& finding = search.chosen[0];
-  // Of 36 rows of noise, one is off by 0.9 besides: about a hundredth of the error.
+  // Each posture has 36 rows of noise, and one of them has an additional error of 0.9, which is
+  // about a hundredth of the whole error.
   EXPECT_GT(finding.mean_gain, finding.gain_sd);
   EXPECT_LT(finding.mean_gain, 0.02 * search.error);
 }
@@ -60,7 +62,8 @@ TEST(SearchCauses, NamesWhatExplainsAlmostAsMuch) {
   EXPECT_EQ(search.chosen[0].rivals, expected);
 }
 
-// Significant, but what it gains may be chance: by a smaller part of twice its standard error.
+// The gain is significant but may be due to chance: it is larger than its standard error, but
+// smaller than twice that.
 TEST(SearchCauses, TakesNothingOfWhichTheGainIsDoubtful) {
   const CauseSearch search = SearchCauses(MakeStudy(0.45));
   EXPECT_LT(search.findings[0].p_adjusted, 0.05);

@@ -24,8 +24,8 @@ TEST(AssessLegs, TheStiffnessIsThatOfItsCompliancesInTheMeanPosture) {
     if (parameter.kind == ParameterKind::kLegMoment) result.delta[i] = 1e-5 * (1 + parameter.axis);
   }
   result.placement.footings = {{0, 0, {0, 2}}};
-  // Known to a tenth along x, hardly along y; nothing else is uncertain but the loads, to 5 %: no
-  // torque was measured.
+  // The compliance along x is known to a tenth, the one along y hardly. Nothing else is uncertain
+  // except the loads, which are known to 5 % because no torque was measured.
   const auto find = [&](const char* name) {
     return FindParameter(robot.model.parameters, robot.model.legs[0].name + name);
   };
@@ -33,7 +33,7 @@ TEST(AssessLegs, TheStiffnessIsThatOfItsCompliancesInTheMeanPosture) {
   result.posterior.covariance = Eigen::Vector2d(1e-14, 4e-12).asDiagonal();
   result.interval_factor = 2.0;
   const std::vector<LegStiffness> legs = AssessLegs(result, recording);
-  ASSERT_EQ(legs.size(), 1u);  // the right one never stood
+  ASSERT_EQ(legs.size(), 1u);  // the right leg never stood
   EXPECT_EQ(legs[0].leg, "left");
   EXPECT_DOUBLE_EQ(legs[0].q[0], 0.35);
   ASSERT_EQ(legs[0].posture.size(), robot.model.legs[0].joints.size());

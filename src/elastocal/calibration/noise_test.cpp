@@ -10,7 +10,7 @@ namespace {
 
 class NoiseGroupsTest : public testing::Test {
  protected:
-  /// Trials of one posture that see these clusters, on these feet.
+  /// Groups of trials of one posture each, with the clusters that they see and the feet that stand.
   std::vector<int> Groups(const std::vector<std::vector<std::string>>& seen,
                           const std::vector<std::vector<int>>& support) const {
     std::vector<Trial> trials;
@@ -29,7 +29,8 @@ class NoiseGroupsTest : public testing::Test {
 
 TEST_F(NoiseGroupsTest, TrialsThatShareJointsAreOne) {
   const int left = robot_.left, right = robot_.right;
-  // The standing leg's own foot is seen, but its joints are not what the trial is about.
+  // The markers of the standing foot are seen, but the trial does not exercise the joints of that
+  // leg.
   EXPECT_EQ(Groups({{"WAIST", "TRUNK"}, {"WAIST", "LFOOT", "RFOOT"}, {"WAIST", "LFOOT", "RFOOT"}},
                    {{left, right}, {right}, {left}}),
             (std::vector<int>{0, 1, 2}));
@@ -42,7 +43,7 @@ TEST_F(NoiseGroupsTest, ATrialThatSharesWithTwoJoinsThem) {
             (std::vector<int>{0, 0, 1, 0}));
 }
 
-// Or its standard deviations would be reported, which nothing has estimated.
+// Otherwise standard deviations that nothing has estimated would be reported.
 TEST_F(NoiseGroupsTest, ATrialWithoutPosturesHasNone) {
   const Recording both =
       robot_.Empty({{.name = "refused", .chains = {}}, {.name = "used", .chains = {}}}, 1);

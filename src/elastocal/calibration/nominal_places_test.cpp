@@ -9,7 +9,8 @@
 namespace elastocal {
 namespace {
 
-/// The biped with each cluster displaced along the axes of its link, and then estimated.
+/// The biped with each cluster displaced along the axes of its link. These displacements are then
+/// estimated.
 class NominalPlacesTest : public testing::Test {
  protected:
   NominalPlacesTest() {
@@ -25,7 +26,7 @@ class NominalPlacesTest : public testing::Test {
     result_.posterior.covariance = 1e-8 * Eigen::MatrixXd::Identity(count, count);
   }
 
-  /// Every coordinate by itself.
+  /// Displaces every coordinate of every marker independently.
   void Scatter(double sd, std::uint64_t seed) {
     Random random(seed);
     for (int i : result_.posterior.parameters) result_.delta[i] += random.Normal(sd);
@@ -53,14 +54,15 @@ TEST_F(NominalPlacesTest, AreAsFarOffAsTheirClustersAreDisplaced) {
   EXPECT_NEAR(std::sqrt(squares), 3e-3, 0.4e-3);
 }
 
-// A plate has its markers where it was drawn, wherever it is fixed.
+// The markers of a plate are where they were drawn on the plate, even if the plate is fixed
+// elsewhere.
 TEST_F(NominalPlacesTest, TheShapeOfAClusterTellsNothing) {
   for (int i : result_.posterior.parameters) {
     if (NameOf(i).ends_with(".x")) result_.delta[i] = 20e-3;
   }
   const NominalPlaces places = AssessNominalPlaces(result_);
-  // As independent errors would displace a cluster of three by 20 mm along one axis of three, and
-  // turn it by none of three.
+  // Independent errors of this size would displace a cluster by 20 mm along one of three axes, and
+  // turn it about none of three.
   EXPECT_NEAR(places.sd, 20e-3 * std::sqrt(3.0 / 6.0), 1e-5);
 }
 

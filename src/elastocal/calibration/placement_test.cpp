@@ -10,7 +10,7 @@ namespace {
 
 class FootingsTest : public testing::Test {
  protected:
-  /// Moves the markers of a cluster along x from a posture on.
+  /// Moves the markers of a cluster along x, from the given posture to the last one.
   void Shift(const std::string& cluster, int posture, double by, Recording& recording) const {
     for (int m = 0; m < robot_.model.marker_count(); ++m) {
       if (!robot_.model.markers[m].name.starts_with(cluster)) continue;
@@ -41,8 +41,8 @@ TEST_F(FootingsTest, OneForEachTrialOnOneLegOrWithItsRootHeld) {
 TEST_F(FootingsTest, ASlipOfTheStandingFootBeginsAnother) {
   Recording recording = robot_.Empty({{.name = "left", .chains = {}, .support = {robot_.left}}}, 6);
   Shift("LFOOT", 2, 3e-3, recording);
-  Shift("LFOOT", 5, 0.9e-3, recording);  // less than counts
-  Shift("RFOOT", 1, 0.1, recording);     // swings
+  Shift("LFOOT", 5, 0.9e-3, recording);  // less than the threshold
+  Shift("RFOOT", 1, 0.1, recording);     // this foot swings
   std::vector<Slip> slips;
   const std::vector<Footing> footings = FindFootings(robot_.model, recording, 1e-3, &slips);
   ASSERT_EQ(footings.size(), 2u);

@@ -44,7 +44,7 @@ class PosteriorTest : public ::testing::Test {
     return information / (marker_sd * marker_sd);
   }
 
-  /// With the noise as given, none of it shared.
+  /// Posterior with the given noise, of which the markers of a body share none.
   Posterior Compute(double marker_sd) const {
     const std::vector<char> tied(12, 1);
     const Selection selection = Select(model_, recording_, mask_, tied);
@@ -70,10 +70,10 @@ TEST_F(PosteriorTest, CovarianceIsTheInverseOfDataAndPriorInformation) {
   Eigen::Matrix3d information = Information(kMarkerSd);
   information(0, 0) += std::pow(prior_[ParameterKind::kTheta], -2);
   information(1, 1) += std::pow(prior_[ParameterKind::kD], -2);
-  information(2, 2) += 1.0;  // a metre: nothing is known of markers
+  information(2, 2) += 1.0;  // prior of a metre: the position of a marker is unknown
   const Posterior posterior = Compute(kMarkerSd);
-  // The recording's markers are all at the origin, so that its postures scatter beyond all bounds;
-  // what that adds to the covariance is the data's part of it.
+  // The recording has all markers at the origin, so that its postures scatter beyond all bounds.
+  // The scatter is added to the data's part of the covariance.
   const Eigen::Matrix3d inverse = information.inverse();
   const Eigen::Matrix3d expected =
       inverse + (posterior.cluster_factor - 1.0) * inverse * Information(kMarkerSd) * inverse;
@@ -82,7 +82,7 @@ TEST_F(PosteriorTest, CovarianceIsTheInverseOfDataAndPriorInformation) {
 }
 
 TEST_F(PosteriorTest, EffectiveParametersGoFromNoneToAll) {
-  // Exact measurements determine everything, worthless ones nothing but the prior.
+  // Exact measurements determine all parameters. Worthless ones leave all of them to the prior.
   EXPECT_NEAR(Compute(1e-6).effective_parameters, 3.0, 1e-4);
   EXPECT_NEAR(Compute(1e4).effective_parameters, 0.0, 1e-4);
 }

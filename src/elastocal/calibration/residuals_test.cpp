@@ -67,8 +67,9 @@ TEST_F(Residuals, ErrorsAndUnknownsAreOneToOne) {
   }
 }
 
-// Residuals are 1e4 (metres over 0.2 mm) and change by about 40 a unit of x; central differences
-// with a step of 1e-4 leave 1e-8 of truncation and 1e-8 of rounding of these.
+// Residuals are 1e4 (metres over 0.2 mm) and change by about 40 per unit of x. Central differences
+// with a step of 1e-4 then have a truncation error of 1e-8 and a rounding error of 1e-8 of the
+// Jacobian.
 TEST_F(Residuals, JacobianEqualsDifferences) {
   const Eigen::VectorXd x = Random(3).NormalVector(static_cast<Eigen::Index>(free_.size()), 1.0);
   const Eigen::MatrixXd J = DenseJacobian(problem_, x);
@@ -79,7 +80,8 @@ TEST_F(Residuals, JacobianEqualsDifferences) {
   }
 }
 
-// Position of the body is shared; what is left in the basis has the variance of one marker.
+// The markers of a body share its position error. The other rows of the basis have the variance of
+// one marker.
 TEST_F(Residuals, RowsHaveTheVariancesOfTheirSources) {
   const BodyObservation& body = selection_.bodies.front();
   ASSERT_EQ(body.markers.size(), 3u);
@@ -88,11 +90,11 @@ TEST_F(Residuals, RowsHaveTheVariancesOfTheirSources) {
   for (Eigen::Index row = 0; row < 9; ++row) {
     EXPECT_NEAR(sds[row], 0.2e-3 * (row < 3 ? 2.0 : 1.0), 1e-15) << row;  // 1 + 3 variances
   }
-  // A displacement of the body shows in its first rows alone.
+  // A displacement of the body changes only its first three rows.
   Eigen::MatrixXd shift = Eigen::MatrixXd::Zero(9, 1);
   for (int m = 0; m < 3; ++m) shift(3 * m, 0) = 1e-3;
   EXPECT_LT(problem_.Whiten(0, shift).bottomRows(6).norm(), 1e-12);
-  // A small rotation about the centre only in the next three.
+  // A small rotation about the centre changes only the next three rows.
   Eigen::MatrixXd turn(9, 1);
   Eigen::Matrix3d positions;
   for (int m = 0; m < 3; ++m) {

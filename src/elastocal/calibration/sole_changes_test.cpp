@@ -11,7 +11,7 @@ TEST(CompareSoles, AWornSoleDiffersByMoreThanBothIntervals) {
   SoleSpring after{.leg = "left", .changes = 2, .compliance = 9.5e-7, .sd = 4e-8};
   const std::vector<SoleSpring> earlier = {before, {.leg = "right"}};
   const std::vector<SoleDifference> found = CompareSoles(earlier, {{.leg = "right"}, after});
-  ASSERT_EQ(found.size(), 1u);  // nothing is told of the right one
+  ASSERT_EQ(found.size(), 1u);  // the right sole has no estimate
   EXPECT_EQ(found[0].leg, "left");
   EXPECT_NEAR(found[0].sd, 5e-8, 1e-15);
   EXPECT_NEAR(found[0].half_width, 1.96 * 5e-8, 1e-15);
@@ -20,7 +20,7 @@ TEST(CompareSoles, AWornSoleDiffersByMoreThanBothIntervals) {
   EXPECT_FALSE(CompareSoles(earlier, {after}).at(0).significant());
   after.compliance = 7e-7;
   EXPECT_TRUE(CompareSoles(earlier, {after}).at(0).significant());
-  after.interval_factor = 12.7;  // of one change of load
+  after.interval_factor = 12.7;  // with one change of load
   EXPECT_FALSE(CompareSoles(earlier, {after}).at(0).significant());
 }
 

@@ -14,7 +14,8 @@ namespace {
 
 constexpr int kPosturesEach = 4;
 
-/// The biped on its left foot by itself (1), on both (2) or on the right one (0), trial by trial.
+/// The biped stands on its left foot (1), on both feet (2) or on its right foot (0), trial by
+/// trial.
 class SoleSprings : public testing::Test {
  protected:
   SoleSprings() { result_.model = robot_.model; }
@@ -35,7 +36,7 @@ class SoleSprings : public testing::Test {
     return recording;
   }
 
-  /// Puts a foot, as its markers show it, in all postures of a trial.
+  /// Places the markers of a foot so that they show this pose in all postures of a trial.
   void Put(const std::string& cluster, int trial, const Transform& T_ref_foot,
            Recording& recording) const {
     for (int m = 0; m < robot_.model.marker_count(); ++m) {
@@ -51,7 +52,7 @@ class SoleSprings : public testing::Test {
   std::vector<SoleSpring> Estimate(const Recording& recording) const {
     std::vector<FootRest> rests = FindFootRests(robot_.biped.tree, robot_.biped.markers, recording);
     for (FootRest& rest : rests) {
-      if (std::isnan(rest.share)) rest.share = share_on_two_;  // nobody measured torques
+      if (std::isnan(rest.share)) rest.share = share_on_two_;  // no torques were measured
     }
     return EstimateSoleSprings(result_, rests, -9.81 * up_);
   }
@@ -80,8 +81,9 @@ TEST_F(SoleSprings, HeightOverLoadOfAFootThatStays) {
   EXPECT_EQ(left.leg, "left");
   EXPECT_EQ(left.changes, 2);
   EXPECT_NEAR(left.compliance, 1e-6, 1e-12);
-  // It moved by 30 um along the floor once: of 2 x 3 and 2 x 2 numbers for the two feet, less one
-  // for the estimate; the right foot left the floor.
+  // The left foot moved by 30 um along the floor once. Its two changes of load give 2 x 3
+  // coordinates, less one for the estimate, hence 5 degrees of freedom. The right foot left the
+  // floor and adds none.
   const double along = 3e-5 * std::sqrt(2.0 / 3.0);
   const double loads = std::sqrt(2.0 / 3.0) * (weight_ - on_two);
   EXPECT_NEAR(left.sd, std::hypot(along / std::sqrt(5.0) / loads, 0.05e-6), 1e-12);
@@ -98,18 +100,18 @@ TEST_F(SoleSprings, ATiltCountsAtTheOriginOfTheLink) {
   const Transform tilted = Eigen::Translation3d(0.0, 0.0, -2e-4) * RotX(2e-3);
   Put("LFOOT", 1, tilted, recording);
   EXPECT_NEAR(Left(recording).compliance, 2e-4 / (0.5 * weight_), 1e-10);
-  share_on_two_ = NAN;  // without torques, how much the foot carried before is not known
+  share_on_two_ = NAN;  // without torques, the load of the foot before is unknown
   EXPECT_TRUE(std::isinf(Left(recording).sd));
 }
 
 TEST_F(SoleSprings, AFootThatIsSetDownAnewTellsNothing) {
-  // Each time the floor is half a millimetre lower there.
+  // The floor is half a millimetre lower at each of these places.
   for (const Transform& there : {At(0.5e-3, 0.0, -5e-4), At(0.0, 0.0, -5e-4, 8e-3)}) {
     Recording recording = Stand({2, 1});
     Put("LFOOT", 1, there, recording);
     EXPECT_TRUE(std::isinf(Left(recording).sd));
   }
-  // Lifted in between, or recorded on another day.
+  // The foot was lifted in between, or the trials were recorded on different days.
   Recording recording = Stand({2, 0, 1});
   Put("LFOOT", 2, At(0.0, 0.0, -5e-4), recording);
   EXPECT_TRUE(std::isinf(Left(recording).sd));
@@ -138,7 +140,7 @@ TEST_F(SoleSprings, WhatDriftsAsMuchAsItSinksIsNotTold) {
   EXPECT_GT(left.compliance, 0.0);
   EXPECT_FALSE(left.told());
   EXPECT_GT(left.most(), 2.0 * left.compliance);
-  // Nor what rises under load, nor loads that hardly change.
+  // Nor is a compliance told by a sole that rises under load, or by loads that hardly change.
   Put("LFOOT", 1, At(0.0, 1e-6, 3e-4), recording);
   EXPECT_FALSE(Left(recording).told());
   EXPECT_FALSE(Left(Stand({2, 2, 2})).told());

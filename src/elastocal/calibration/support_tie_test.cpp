@@ -18,7 +18,7 @@ Transform Displaced(const Vector6d& by) {
   return T;
 }
 
-/// Motion of a body under the screw [a; m] for one unit of time: exact, about the origin.
+/// Exact motion of a body under the screw [a; m], about the origin, for one unit of time.
 Transform Screw(const Vector6d& screw) {
   Transform T = Transform::Identity();
   T.linear() = RotationFromVector(screw.head<3>());
@@ -26,7 +26,7 @@ Transform Screw(const Vector6d& screw) {
   return T;
 }
 
-/// A robot on one leg that leans by a degree and is 5 mm off.
+/// A robot on one leg: it leans by a degree and is displaced by 5 mm.
 SupportTie LeaningRobot() {
   Random random(7);
   SupportTie tie;
@@ -39,7 +39,8 @@ SupportTie LeaningRobot() {
 
 TEST(SupportTie, IsZeroWhereTheLoadedLegReachesFromFootToWaist) {
   SupportTie tie = LeaningRobot();
-  // The foot's axes are the reference's: the waist 0.9 m up, then moved 3 mm down and leaning.
+  // The axes of the foot are those of the reference. The waist is 0.9 m above the foot, then 3 mm
+  // lower and leaning.
   tie.T_ref_foot = Displaced((Vector6d() << 1.0, 2.0, 0.0, 0.0, 0.0, 0.0).finished());
   tie.deflection << 0.0, 0.001, -0.003, 0.004, 0.0, 0.0;
   Transform T_foot_waist = Displaced((Vector6d() << 0.1, 0.0, 0.9, 0.2, 0.3, 0.1).finished());
@@ -50,7 +51,7 @@ TEST(SupportTie, IsZeroWhereTheLoadedLegReachesFromFootToWaist) {
   tie.T_ref_foot_predicted = tie.T_ref_waist * T_waist_foot;
   EXPECT_LT(EvaluateTie(tie).residual.norm(), 1e-15);
 
-  // Half a millimetre lower than the leg explains.
+  // The waist is half a millimetre lower than the leg explains.
   tie.T_ref_waist.translation().z() -= 0.0005;
   tie.T_ref_foot_predicted.translation().z() -= 0.0005;
   const Vector6d residual = EvaluateTie(tie).residual;

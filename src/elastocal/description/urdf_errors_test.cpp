@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong in a robot description is named with its line.
+// Errors in a robot description are reported with their line.
 #include <gtest/gtest.h>
 
 #include "tests/urdf_snippets.hpp"

@@ -27,7 +27,7 @@ TEST(UrdfReader, ReadsJoint) {
   EXPECT_EQ(tree.links[joint.parent_link].name, "a");
   EXPECT_EQ(tree.links[joint.child_link].name, "b");
   EXPECT_TRUE(joint.axis.isApprox(-Eigen::Vector3d::UnitZ(), 1e-15));
-  // By way of a quaternion: a few roundings.
+  // The rotation passes through a quaternion, which costs a few roundings.
   EXPECT_TRUE(joint.T_parent_child.isApprox(FromXyzRpy({1, 2, 3}, {0, 0, 0.5}), 1e-15));
   EXPECT_EQ(joint.limits.lower, -1.0);
   EXPECT_EQ(joint.limits.upper, 2.0);
@@ -84,7 +84,8 @@ TEST(UrdfReader, LinksOnFixedJointsAreOneBody) {
 }
 
 TEST(UrdfReader, JointsFollowTheFileAsFarAsTheTreeAllows) {
-  // b2 stands before the joint that carries it; z before a: neither alphabetical nor by depth.
+  // Joint b2 stands before the joint that carries it, and z before a: the order is neither
+  // alphabetical nor by depth.
   const RobotTree tree =
       ParseLinks(LinkXml("root") + LinkXml("l1") + LinkXml("l2") + LinkXml("l3") + LinkXml("l4") +
                  JointXml("b2", "revolute", "l1", "l2") + JointXml("z", "revolute", "root", "l3") +
@@ -183,7 +184,8 @@ TEST(UrdfReader, LimitsInWhichAMimicJointCouldNotFollowAreNone) {
   EXPECT_TRUE(right.warnings.empty());
 }
 
-// Others are read as they are: what is wrong with them is said where inertia is used.
+// Other moments of inertia are read as they are. The code that uses inertia reports what is wrong
+// with them.
 TEST(UrdfReader, AMomentOfInertiaBelowZeroByRoundingIsZero) {
   const auto parse = [](const std::string& ixx) {
     return ParseLinks("<link name='a'/><link name='b'><inertial><mass value='1'/><inertia ixx='" +
@@ -197,7 +199,7 @@ TEST(UrdfReader, AMomentOfInertiaBelowZeroByRoundingIsZero) {
 
 TEST(UrdfReader, FloatingAndPlanarJointsPartTheRobotFromTheRest) {
   const std::string arm = LinkXml("a") + LinkXml("b") + JointXml("hip", "revolute", "a", "b");
-  // A ball in its hand, with something that turns on it.
+  // A ball in the robot's hand, with a link that turns on the ball.
   const RobotTree holder = ParseLinks(arm + LinkXml("c") + LinkXml("ball") + LinkXml("lid") +
                                       JointXml("more", "revolute", "b", "c") +
                                       JointXml("free", "floating", "c", "ball", "") +
@@ -205,7 +207,7 @@ TEST(UrdfReader, FloatingAndPlanarJointsPartTheRobotFromTheRest) {
   EXPECT_EQ(holder.links.size(), 3u);
   EXPECT_EQ(holder.joints.size(), 2u);
   ExpectWarning(holder, "'free' is floating: what it carries (link 'ball') is left out, with 1 ");
-  // A robot beside a camera in the world: nothing of the robot is left out.
+  // The robot hangs on a link that also carries a camera. All of the robot is read.
   const RobotTree beside = ParseLinks(LinkXml("camera") + LinkXml("world") + arm +
                                       JointXml("on", "fixed", "world", "camera", "") +
                                       JointXml("free", "floating", "world", "a", ""));
@@ -216,7 +218,8 @@ TEST(UrdfReader, FloatingAndPlanarJointsPartTheRobotFromTheRest) {
       ParseLinks(LinkXml("floor") + arm + JointXml("p", "planar", "floor", "a", ""));
   EXPECT_EQ(wheeled.links[0].name, "a");
   EXPECT_EQ(wheeled.joints.size(), 1u);
-  // The robot is what carries; a mimic joint of it must not follow what is left out.
+  // The robot is the part that carries the other. Its mimic joint must not follow a joint that is
+  // left out.
   ExpectLinksError(
       arm + LinkXml("c") + LinkXml("d") + LinkXml("e") +
           JointXml("free", "floating", "b", "c", "") + JointXml("lid", "revolute", "c", "d") +
@@ -280,7 +283,7 @@ TEST(UrdfReader, RefusesHostileBytes) {
                    {"r.urdf:2: ", "'name' of link", "text in UTF-8 was expected"});
 }
 
-/// Parsing, searching and destroying take no stack that grows with the depth.
+/// Parsing, searching and destroying need no stack that grows with the depth.
 TEST(UrdfReader, PassesOverDeepNesting) {
   std::string open, close;
   for (int i = 0; i < 1000000; ++i) {
@@ -335,8 +338,8 @@ TEST(UrdfReader, ReadsTheModelsOfTheTests) {
   EXPECT_EQ(ReadUrdf(SourceFile("models/talos/talos.urdf")).coordinate_count(), 30);
 }
 
-/// The most links that are read, in one chain, each movable joint following the one before: nothing
-/// in it may take time or stack that grows out of hand.
+/// The largest number of links that is accepted, in one chain, in which each movable joint follows
+/// the one before. Time and stack must not grow out of hand.
 TEST(UrdfReader, ReadsTheLongestChain) {
   const auto chain = [](int movable) {
     std::string contents = LinkXml("0");
@@ -367,7 +370,7 @@ TEST(UrdfReader, ARevoluteJointOfManyTurnsHasNoEnd) {
                    {"from -1000 to 1000"});
 }
 
-// Numbers, sizes and names that no robot has, which would overflow or take hours.
+// No robot has such numbers, sizes and names. They would overflow or take hours.
 TEST(UrdfReader, RefusesWhatNoRobotHas) {
   const std::string links = LinkXml("a") + "\n" + LinkXml("b") + "\n";
   const auto joint = [&](const std::string& limit) {

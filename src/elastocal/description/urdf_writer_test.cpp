@@ -73,8 +73,8 @@ TEST(UrdfWriter, InsertsMissingAttributes) {
                      "<joint name=\"toe\" type=\"fixed\"><origin xyz=\"0 0 1\" rpy=\"2 0 0\"/>"));
 }
 
-// Entities shorten what the parser holds, and a byte order mark is skipped by it: neither may move
-// the places in the text.
+// The parser shortens entities and skips a byte order mark. Neither may shift the places in the
+// text.
 TEST(UrdfWriter, FindsPlacesBehindEntitiesAndMarks) {
   const std::string text =
       "\xEF\xBB\xBF<!-- caf\xe9 --><robot name=\"&lt;&lt;r&gt;&gt;\"><link name='a&#233;'/><link "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drafted projects: of the embedded humanoid against its hand-written project, of small robots
-// made up here.
+// Drafted projects: the embedded humanoid, compared with its hand-written project, and small robots
+// that are written here.
 #include "elastocal/drafting/draft.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ TEST(DraftStudy, TalosHasTheLimbsOfItsHandWrittenProject) {
   const Project drafted = ReadBack(DraftFile("models/talos/talos.urdf"), folder);
   const Project written = ReadProject(SourceFile("models/talos/project.yaml"));
   EXPECT_EQ(drafted.markers.size(), written.markers.size());
-  // Chains by their ends, with as many markers each.
+  // Chains are compared by their end links and their number of markers.
   const auto ends = [](const Project& project) {
     std::map<std::pair<std::string, std::string>, std::size_t> found;
     for (const Chain& chain : project.chains) {
@@ -41,7 +41,7 @@ TEST(DraftStudy, TalosHasTheLimbsOfItsHandWrittenProject) {
     return found;
   };
   EXPECT_EQ(ends(drafted), ends(written));
-  // The soles are a box of 210 x 130 mm; their links are in the URDF.
+  // Each sole is a box of 210 x 130 mm. The links of the soles are in the URDF.
   ASSERT_EQ(drafted.soles.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(drafted.tree.links[Size(drafted.soles[i].link)].name,
@@ -64,10 +64,11 @@ TEST(DraftStudy, ClustersAreFatTrianglesOfDifferentSides) {
       std::array<double, 3> sides = {Length(project, m[0], m[1]), Length(project, m[1], m[2]),
                                      Length(project, m[2], m[0])};
       std::sort(sides.begin(), sides.end());
-      // 0.88, and what rounding to millimetres changes of sides of 20 mm and more.
+      // The ratio is 0.88. Rounding to millimetres changes it a little, since sides are 20 mm and
+      // more.
       EXPECT_LT(sides[0], 0.93 * sides[1]) << robot << " " << cluster.name;
       EXPECT_LT(sides[1], 0.93 * sides[2]) << robot << " " << cluster.name;
-      // The height above the longest side by Heron's formula.
+      // Heron's formula gives the height above the longest side.
       const double s = 0.5 * (sides[0] + sides[1] + sides[2]);
       const double area = std::sqrt(s * (s - sides[0]) * (s - sides[1]) * (s - sides[2]));
       EXPECT_GT(2.0 * area / sides[2], 0.3 * sides[2]) << robot << " " << cluster.name;
@@ -75,7 +76,7 @@ TEST(DraftStudy, ClustersAreFatTrianglesOfDifferentSides) {
   }
 }
 
-/// Names of the limbs of the pole with more links.
+/// Names of the limbs of the pole with the additional links `more`.
 std::vector<std::string> LimbsOfPole(const std::string& more) {
   std::vector<std::string> names;
   const std::string urdf = PoleUrdf("<box size='0.3 0.3 0.3'/>", "20", more);
@@ -85,7 +86,7 @@ std::vector<std::string> LimbsOfPole(const std::string& more) {
   return names;
 }
 
-/// A joint whose limit is at zero rests so far from it that `--limit-margin-deg 6` finds room.
+/// A joint with a limit at zero rests so far from it that `--limit-margin-deg 6` leaves it room.
 TEST(Draft, TheRestOfAnElbowKeepsAwayFromItsLimit) {
   std::string urdf = PoleUrdf("<box size='0.3 0.3 0.3'/>", "20");
   for (const char* joint : {"l2_joint", "r2_joint"}) {
@@ -96,7 +97,8 @@ TEST(Draft, TheRestOfAnElbowKeepsAwayFromItsLimit) {
   const auto rest = [&](const char* joint) {
     return draft.rest.q[draft.tree.joints[Size(FindJoint(draft.tree, joint))].coordinate];
   };
-  // 2.1 % of the range and 10 degrees; a joint whose zero is far from its limits stays there.
+  // The distance is 2.1 % of the range and 10 degrees. A joint whose zero is far from its limits
+  // rests at zero.
   EXPECT_NEAR(rest("l2_joint"), -(0.042 + 10.0 * kRadiansPerDegree), 1e-3);
   EXPECT_EQ(rest("l1_joint"), 0.0);
 }
@@ -114,7 +116,7 @@ TEST(Draft, MissingMeshesAreOneWarning) {
   EXPECT_EQ(draft.warnings[0],
             "meshes of package 'pole' are missing: 2, the first one 'package://pole/arm.stl'; give "
             "its folder by --package pole=DIR");
-  // In millimetres, without a scale that says so.
+  // The mesh is in millimetres, and no scale says so.
   folder.Write("arm.stl",
                "solid\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 200 0 0\nvertex 0 200 "
                "0\nendloop\nendfacet\nendsolid\n");
@@ -139,7 +141,7 @@ TEST(DraftStudy, PartsThatAreCheckedAreApartAtRestAndTheSolesLieFlat) {
     const auto zero =
         LinkTransforms(project.tree, Eigen::VectorXd::Zero(project.tree.coordinate_count()));
     for (const Sole& sole : project.soles) {
-      // Angles are written with a thousandth of a degree.
+      // Angles are written to a thousandth of a degree.
       EXPECT_LT(RotationAngle(poses[Size(sole.link)].linear() *
                               zero[Size(sole.link)].linear().transpose()),
                 1e-4);
@@ -150,18 +152,18 @@ TEST(DraftStudy, PartsThatAreCheckedAreApartAtRestAndTheSolesLieFlat) {
 }
 
 TEST(Draft, WheelsAreNoLimbsAndALongBranchIsAnArm) {
-  // The pole's left branch gets two more joints, and two wheels are put beside.
+  // The left branch of the pole gets two more joints, and the pole gets two wheels.
   const std::string more = RodXml("l3", "l2", "0.2 0 0") + RodXml("l4", "l3", "0.2 0 0") +
                            RodXml("wheel_l", "pole", "0 0.2 -0.1", "continuous") +
                            RodXml("wheel_r", "pole", "0 -0.2 -0.1", "continuous");
   EXPECT_EQ(LimbsOfPole(more), (std::vector<std::string>{"head", "arm"}));
-  // Where nothing else moves, what turns without an end is a limb all the same.
+  // If nothing else moves, even a joint that turns without an end is a limb.
   const std::string alone = "<robot name='a'><link name='pole'/>" +
                             RodXml("plate", "pole", "0 0 1", "continuous") + "</robot>";
   EXPECT_EQ(DraftProject(alone, "a.urdf", {}).limbs.limbs.size(), 1u);
 }
 
-// As of Pepper, whose base is the end of its leg.
+// Pepper is such a robot: its base is the end of its leg.
 TEST(Draft, WheelsBesideEachOtherAreNoLimbsWhereverTheyAre) {
   const std::string more = RodXml("hip", "pole", "0 0 -0.2") + RodXml("base", "hip", "0 0 -0.3") +
                            RodXml("wheel_l", "base", "0 0.2 -0.1", "continuous") +
@@ -169,7 +171,7 @@ TEST(Draft, WheelsBesideEachOtherAreNoLimbsWhereverTheyAre) {
   EXPECT_EQ(LimbsOfPole(more), (std::vector<std::string>{"left_arm", "right_arm", "leg"}));
 }
 
-// As of the HSR: a turning base carries casters of three joints each.
+// The HSR is such a robot: its turning base carries casters of three joints each.
 TEST(Draft, CastersAndWhatCarriesNothingElseAreNoLimbs) {
   const std::string caster = RodXml("base", "pole", "0 0 -0.2", "continuous") +
                              RodXml("caster_x", "base", "0 0.2 0", "continuous") +
@@ -198,7 +200,7 @@ TEST(DraftStudy, ASoleWithoutALinkIsAddedToTheUrdf) {
   ASSERT_EQ(project.soles.size(), 2U);
   for (const Sole& sole : project.soles) {
     EXPECT_TRUE(project.tree.links[Size(sole.link)].name.ends_with("_leg_sole"));
-    // -0.27105 - 0.38 - 0.325 - 0.107: hip, knee, ankle, underside of the foot's box.
+    // Depths of hip, knee, ankle and underside of the foot's box: -0.27105 - 0.38 - 0.325 - 0.107.
     EXPECT_NEAR(zero[Size(sole.link)].translation().z(), -1.08305, 1e-6);
     EXPECT_NEAR((sole.upper - sole.lower).x(), 0.210, 1e-3);
     EXPECT_NEAR((sole.upper - sole.lower).y(), 0.130, 1e-3);
@@ -254,7 +256,7 @@ TEST(Draft, SectionsOfATelescopeAreNotChecked) {
 
 TEST(Draft, PairsThatTouchInAnyPostureOfRestAreNotChecked) {
   const RobotTree tree = ParseUrdf(PoleUrdf("<sphere radius='0.1'/>", "10"), "pole");
-  // Side by side at 2 mm in the zero posture, further apart where one arm is raised.
+  // The spheres are 2 mm apart in the zero posture, and further apart if one arm is raised.
   const std::vector<CollisionSphere> spheres = {{"L", FindLink(tree, "l1"), {0.2, 0, 0}, 0.199},
                                                 {"R", FindLink(tree, "r1"), {0.2, 0, 0}, 0.199}};
   ChainSetup chain;

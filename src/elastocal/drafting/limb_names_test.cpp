@@ -13,7 +13,7 @@
 namespace elastocal {
 namespace {
 
-/// The side of an arm of two joints with these names; its tip is called "hand".
+/// The side of an arm of two joints with these names and a tip that is called "hand".
 int SideOf(const std::string& first, const std::string& second) {
   RobotTree tree = PlanarArm();
   tree.joints[0].name = first;
@@ -35,7 +35,7 @@ TEST(LimbNames, TellTheSideInTheWaysThatUrdfsDo) {
   for (const char* right : {"right_knee", "RKneePitch", "r_knee", "knee_r", "RR_hip", "RH_KFE"}) {
     EXPECT_EQ(SideOf(right, "elbow"), -1) << right;
   }
-  // Links by number, words that begin so, and names that contradict each other.
+  // Links with numbers, words that only begin with l or r, and names that contradict each other.
   for (const char* none : {"l1", "lift", "roll", "Rail", "lower", "elbow"}) {
     EXPECT_EQ(SideOf(none, "elbow"), 0) << none;
   }
@@ -60,7 +60,7 @@ TEST(LimbNames, AHeadSaysSoAndALegToo) {
 }
 
 TEST(LimbNamesStudy, SidesAreThoseOfTheNames) {
-  // The embedded robot turned about: its root link looks back.
+  // The embedded robot, turned about so that its root link looks backwards.
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   urdf = std::regex_replace(urdf, std::regex("left"), "other");
   urdf = std::regex_replace(urdf, std::regex("right"), "left");

@@ -26,7 +26,7 @@ std::string JointText(const std::string& parent, const std::string& child, const
          "</joint>";
 }
 
-/// Two arms and a neck of three joints on a trunk, the second of which follows the first.
+/// A trunk with two arms and a neck of three joints, of which the second follows the first.
 std::string RobotWithNeck(bool with_pan) {
   std::string text = "<robot name='r'>" + LinkText("base") + JointText("base", "waist", "") +
                      JointText("waist", "trunk", "");
@@ -52,8 +52,8 @@ std::string EndOfNeck(const std::string& urdf) {
   return "";
 }
 
-/// Two limbs that hang from a trunk, so many m from the root link upwards, and a head. The links
-/// are side + "_" + `name` + "1" and so on.
+/// A trunk that is `trunk_m` above the root link, with two limbs that hang from it and a head. The
+/// links are called side + "_" + `name` + "1" and so on.
 std::string UpperBody(double trunk_m, double head_m, const std::string& name = "") {
   std::string text = "<robot name='r'>" + LinkText("base") +
                      JointText("base", "trunk", "", "0 0 " + std::to_string(trunk_m));
@@ -82,7 +82,7 @@ TEST(Limbs, ArmsThatEndLowestAreNoLegs) {
 
 TEST(Limbs, GoOnBehindAJointThatFollows) {
   EXPECT_EQ(EndOfNeck(RobotWithNeck(true)), "head");
-  // A finger ends with what follows: nothing behind it moves by itself.
+  // Like a finger, the limb ends with the joint that follows: no link behind it moves by itself.
   EXPECT_EQ(EndOfNeck(RobotWithNeck(false)), "lower_neck");
 }
 

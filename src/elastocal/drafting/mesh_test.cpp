@@ -38,7 +38,7 @@ std::string Stl() {
   return text + "endsolid box\n";
 }
 
-/// With quadrilaterals, and a material that is nowhere.
+/// The box of quadrilaterals, with a material file that does not exist.
 std::string Obj() {
   std::string text = "mtllib nowhere.mtl\no box\n";
   for (const auto& corner : kCorners) text += "v" + Words(corner, 1.0) + "\n";
@@ -51,7 +51,8 @@ std::string Obj() {
   return text;
 }
 
-/// In millimetres, with z upwards, and 100 mm too far along y, which its node takes back.
+/// The box in millimetres with z upwards. Its points are 100 mm too far along y, and its node moves
+/// them back.
 std::string Collada() {
   std::string points, indices;
   for (const auto& corner : kCorners) {
@@ -94,7 +95,7 @@ TEST(Mesh, StlObjAndColladaGiveTheSameBoxInMetres) {
         upper = upper.cwiseMax(p);
       }
     }
-    // Vertices are single precision.
+    // Vertices have single precision.
     EXPECT_LT(lower.norm(), 1e-6) << name << " " << lower.transpose();
     EXPECT_LT((upper - Eigen::Vector3d(0.2, 0.3, 0.4)).norm(), 1e-6)
         << name << " " << upper.transpose();
@@ -145,7 +146,7 @@ TEST(Mesh, IsFoundInPackagesAndBesideTheUrdf) {
   EXPECT_EQ(found("package://elsewhere/d.stl"), in_root);
   places.roots = {folder.path() / "root/elsewhere"};
   EXPECT_EQ(found("package://elsewhere/d.stl"), in_root);
-  // What is given counts alone.
+  // A given folder of a package is the only place that is searched for it.
   places.packages["my_robot"] = folder.path() / "root/elsewhere";
   EXPECT_EQ(found("package://my_robot/d.stl"), in_root);
   EXPECT_EQ(found("package://my_robot/meshes/a.stl"), "");
@@ -166,7 +167,7 @@ TEST(Mesh, PointsOnTrianglesLeaveNoHole) {
       const Eigen::Vector3d p = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
       double nearest = std::numeric_limits<double>::infinity();
       for (const Eigen::Vector3d& q : points) nearest = std::min(nearest, (p - q).norm());
-      // Rows are up to a spacing apart, and so are points in a row.
+      // Neighbouring rows are at most one spacing apart, and so are neighbouring points of a row.
       EXPECT_LT(nearest, spacing);
     }
   }
@@ -179,7 +180,7 @@ TEST(Mesh, ThinningKeepsTheOutermostPointsAndLeavesNoHole) {
   }
   const auto thin = ThinOut(points, 500);
   EXPECT_LE(thin.size(), 500U);
-  EXPECT_GE(thin.size(), 250U);  // a step of 1.2 in length is 1.44 in number
+  EXPECT_GE(thin.size(), 250U);  // a step that is 1.2 times longer leaves 1.44 times fewer points
   double left = 1.0, right = 0.0, largest_hole = 0.0;
   for (const Eigen::Vector3d& p : thin) {
     left = std::min(left, p.x());

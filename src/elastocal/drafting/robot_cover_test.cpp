@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spheres that cover a drafted robot.
+// Covering a drafted robot with spheres.
 
 #include <algorithm>
 #include <limits>
@@ -14,7 +14,7 @@
 namespace elastocal {
 namespace {
 
-/// No point of the shapes is further than 15 mm out of the spheres of its link.
+/// No point of a shape is more than 15 mm outside the spheres of its link.
 void ExpectCovered(const ProjectDraft& shapes, const std::vector<CollisionSphere>& spheres) {
   for (const BodyShape& body : shapes.shapes.bodies) {
     for (const Eigen::Vector3d& p : body.points) {
@@ -36,7 +36,7 @@ TEST(Draft, SpheresCoverTheShapesOfTalosWithin15Millimetres) {
   EXPECT_LT(draft.spheres.size(), 70U);
 }
 
-/// A ball around a thin mast on a wide chassis would keep the arms away from everything.
+/// One ball around a thin mast and a wide chassis would keep the arms away from everything.
 TEST(Draft, AMastOnAChassisIsCoveredShapeByShape) {
   const std::string mast =
       "<collision><origin xyz='-0.2 0 0.6'/><geometry><box size='0.12 0.2 1'/></geometry>"
@@ -48,7 +48,7 @@ TEST(Draft, AMastOnAChassisIsCoveredShapeByShape) {
   for (const CollisionSphere& sphere : draft.spheres) {
     if (sphere.link != 0) continue;
     ++count;
-    EXPECT_LT(sphere.radius, 0.25);  // one cover of both has 0.387
+    EXPECT_LT(sphere.radius, 0.25);  // a common cover of both would have a radius of 0.387 m
   }
   EXPECT_LE(count, 12U);
   EXPECT_EQ(draft.warnings.end(), std::ranges::find_if(draft.warnings, [](const std::string& text) {
@@ -89,16 +89,16 @@ TEST(DraftStudy, MeshesAreShapesLikeOthers) {
   places.urdf = folder.Write("meshes.urdf", urdf);
   const ProjectDraft& boxes = DraftFile("models/talos/talos.urdf");
   const ProjectDraft meshes = DraftProject(urdf, "meshes.urdf", {}, places);
-  EXPECT_EQ(meshes.shapes.meshes, 23);  // those for collisions
+  EXPECT_EQ(meshes.shapes.meshes, 23);  // the meshes for collisions
   ASSERT_EQ(meshes.soles.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {
-    // Six decimals of half a length in mm, and single precision.
+    // Half lengths are written in mm with six decimals and read in single precision.
     EXPECT_EQ(meshes.soles[i].link, boxes.soles[i].link);
     EXPECT_LT((meshes.soles[i].lower - boxes.soles[i].lower).norm(), 1e-6);
     EXPECT_LT((meshes.soles[i].upper - boxes.soles[i].upper).norm(), 1e-6);
   }
   EXPECT_EQ(meshes.clusters.size(), boxes.clusters.size());
-  // Points of the boxes' surfaces that the mesh's own points are not.
+  // The boxes have surface points that the meshes do not have.
   ExpectCovered(boxes, meshes.spheres);
 }
 

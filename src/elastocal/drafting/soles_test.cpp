@@ -11,14 +11,14 @@
 namespace elastocal {
 namespace {
 
-/// The soles of the legs, without the rest of a draft.
+/// The soles of the legs, found without drafting the rest of the project.
 std::vector<DraftedSole> SolesOf(const std::string& urdf) {
   const RobotTree tree = ParseUrdf(urdf, "robot.urdf");
   const RobotShapes shapes = ReadBodyShapes(tree, urdf, "robot.urdf", {});
   return FindSoles(tree, shapes, FindLimbs(tree, shapes, {}));
 }
 
-/// Takes what a link looks like out of a URDF.
+/// Removes the visual and collision shapes of a link from a URDF.
 void RemoveShapes(const std::string& link, std::string& urdf) {
   const std::size_t begin = urdf.find("<link name=\"" + link + "\"");
   ASSERT_NE(begin, std::string::npos);
@@ -30,7 +30,7 @@ void RemoveShapes(const std::string& link, std::string& urdf) {
   }
 }
 
-// As of the Unitree R1, whose ankles carry frames of rods.
+// The ankles of the Unitree R1 carry such frames, for its rods.
 TEST(Soles, AFrameNearTheAnkleIsNoSole) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   for (const std::string side : {"left", "right"}) {
@@ -48,7 +48,7 @@ TEST(Soles, AFrameNearTheAnkleIsNoSole) {
   EXPECT_TRUE(soles[0].guessed_height);
 }
 
-// As of Fourier's GR3: the shapes of one foot are on another link than those of the other.
+// Fourier's GR3 is such a robot: the shapes of its two feet are on different links.
 TEST(Soles, AFootWithoutShapesHasTheSoleOfItsMirrorImage) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   RemoveShapes("leg_right_6_link", urdf);
@@ -61,7 +61,8 @@ TEST(Soles, AFootWithoutShapesHasTheSoleOfItsMirrorImage) {
   EXPECT_EQ(soles[1].upper.y(), -soles[0].lower.y());
 }
 
-// As of EngineAI's PM01: a small ball marks the middle of each foot, whose mesh is absent.
+// EngineAI's PM01 is such a robot: a small ball marks the middle of each foot, whose mesh is
+// missing.
 TEST(Soles, AMarkOnTheFootIsNotItsSole) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   for (const std::string link : {"leg_left_6_link", "leg_right_6_link"}) {
@@ -77,7 +78,7 @@ TEST(Soles, AMarkOnTheFootIsNotItsSole) {
   EXPECT_GT(soles[0].upper.x() - soles[0].lower.x(), 0.15);
 }
 
-// As of ergoCub, whose feet have frames of sensors in the floor, ahead and behind.
+// The feet of ergoCub have such frames, of sensors, at the height of the floor, ahead and behind.
 TEST(Soles, OfLinksInTheFloorTheOneCalledSoleIsTheSole) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   const std::string foot =

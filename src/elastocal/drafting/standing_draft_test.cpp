@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drafts of robots that stand on their feet.
+// Drafting robots that stand on their feet.
 #include "elastocal/drafting/standing_draft.hpp"
 
 #include <algorithm>
@@ -32,15 +32,15 @@ TEST(StandingDraftStudy, AQuadrupedStandsOnBalls) {
   StandUp(robot, project.motion.rest, {});
   for (const int foot : robot.AllFeet()) {
     EXPECT_NEAR(robot.T_world_sole[Size(foot)].translation().z(), 0.022, 1e-12);
-    // The root link on any three feet is where it is on all.
+    // Any three feet put the root link where all feet put it.
     const Transform T = RootOverFeet(robot, robot.AllFeetBut(foot), robot.rest);
     EXPECT_LT((T.matrix() - robot.T_world_root.matrix()).norm(), 1e-9);
   }
-  // A third of the least height of a triangle of three feet, 0.48 m long and 0.32 m wide.
+  // A third of the least height of the triangle of three feet, whose sides are 0.48 m and 0.32 m.
   EXPECT_NEAR(robot.half_support, 0.48 * 0.32 / std::hypot(0.48, 0.32) / 3.0, 2e-3);
 }
 
-// As of Berkeley's small humanoid.
+// Berkeley's small humanoid is such a robot.
 TEST(StandingDraftStudy, TheRootLinkMayBeAFrameOnTheFloor) {
   std::string urdf = ReadFile(SourceFile("models/talos/talos.urdf"));
   const ProjectDraft usual = DraftProject(urdf, "talos.urdf", {});
@@ -55,11 +55,13 @@ TEST(StandingDraftStudy, TheRootLinkMayBeAFrameOnTheFloor) {
     EXPECT_EQ(draft.limbs.limbs[i].leg, usual.limbs.limbs[i].leg);
   }
   EXPECT_EQ(draft.stance.has_value(), usual.stance.has_value());
-  // Legs are measured from the hips here, which are 0.27 m below the usual root link: less bent.
+  // The legs are bent less, because they are measured from the hips, which are 0.27 m below the
+  // usual root link.
   EXPECT_LT((draft.rest.q - usual.rest.q).cwiseAbs().maxCoeff(), 0.15);
 }
 
-// As of ANYmal: joints that count turns, and feet that are not under the hips when the legs hang.
+// ANYmal is such a robot: its joints count turns, and its feet are not under the hips when the legs
+// hang.
 TEST(StandingDraftStudy, LegsBendAsFarAsStandingNeeds) {
   std::string urdf = ReadFile(SourceFile("tests/robots/quadruped.urdf"));
   for (const char* limits : {R"(lower="-1.2" upper="2.6")", R"(lower="-2.6" upper="0.1")"}) {
@@ -76,7 +78,8 @@ TEST(StandingDraftStudy, LegsBendAsFarAsStandingNeeds) {
   }
   const ProjectDraft draft = DraftProject(urdf, "quadruped.urdf", {});
   ASSERT_TRUE(draft.stands) << draft.held_because;
-  // Of the two ways in which a knee can bend, those that are bent further: towards each other.
+  // A knee can bend in two ways. The legs take the way in which they bend further, towards each
+  // other.
   const auto knee = [&](const std::string& leg) {
     for (const Joint& joint : draft.tree.joints) {
       if (joint.name == leg + "_knee") return draft.rest.q[joint.coordinate];
@@ -88,7 +91,8 @@ TEST(StandingDraftStudy, LegsBendAsFarAsStandingNeeds) {
   EXPECT_NEAR(knee("front_left"), -knee("hind_right"), 1e-3);
 }
 
-// As of REEM-C, Fourier N1 and Draco 3, whose motors need 91 to 95 % of their efforts on one foot.
+// REEM-C, Fourier N1 and Draco 3 are such robots: on one foot, their motors need 91 to 95 % of
+// their efforts.
 TEST(StandingDraftStudy, MotionsUseNearlyAllOfMotorsThatNeedIt) {
   const std::string urdf = ReadFile(SourceFile("tests/robots/quadruped.urdf"));
   const auto draft_with = [&](double effort) {
@@ -96,7 +100,7 @@ TEST(StandingDraftStudy, MotionsUseNearlyAllOfMotorsThatNeedIt) {
                                            "effort=\"" + std::to_string(effort) + "\""),
                         "quadruped.urdf", {});
   };
-  EXPECT_FALSE(draft_with(10.0).stands);  // 104 % on three feet
+  EXPECT_FALSE(draft_with(10.0).stands);  // three feet would need 104 %
   const ProjectDraft weakest = draft_with(11.0);
   ASSERT_TRUE(weakest.stands) << weakest.held_because;
   EXPECT_EQ(weakest.motion_effort_share, 0.97);

@@ -37,7 +37,7 @@ TEST(Bounds, SayWhatTheyContain) {
   EXPECT_EQ(BoundsOf("calibration.slip_mm").InWords(), "a number from 0.001 to 1000, or .inf");
 }
 
-// The document has the table of the program, so that neither can change alone.
+// The document must contain the program's table, so that neither can change alone.
 TEST(Bounds, StandInTheDocument) {
   const std::string document = ReadFile(SourceFile("docs/formats.md"));
   EXPECT_NE(document.find(BoundsTable()), std::string::npos)

@@ -83,7 +83,7 @@ TEST_F(OutputFiles, WritesToDevicesAndPipesWithoutReplacingThem) {
   fs::create_directories(folder_);
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  std::fstream reader(pipe);  // open to both sides, so that nobody waits
+  std::fstream reader(pipe);  // open for reading and writing, so that neither side waits
   WriteFile(pipe, "text\n");
   std::string line;
   EXPECT_TRUE(std::getline(reader, line));
@@ -155,7 +155,7 @@ TEST_F(OutputFiles, GivesTheReasonWhyAFileCannotBeRead) {
 
 TEST_F(OutputFiles, RefusesAHugeFileUnread) {
   WriteFile(folder_ / "huge", "");
-  fs::resize_file(folder_ / "huge", (256u << 20) + 1);  // a hole: takes no space on the disk
+  fs::resize_file(folder_ / "huge", (256u << 20) + 1);  // a sparse file: needs no disk space
   ExpectInputError([&] { ReadFile(folder_ / "huge"); }, {"huge", "at most 256 MiB"});
 }
 

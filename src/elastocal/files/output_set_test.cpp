@@ -139,7 +139,7 @@ TEST_F(OutputSetTest, SeveralThreadsWriteIntoOneFolder) {
   EXPECT_EQ(CountIn(folder_), 4);
 }
 
-/// A folder as a run leaves it that is killed right after its commit.
+/// Leaves the folder in the state of a run that was killed right after its commit.
 void LeaveCommitted(const fs::path& folder) {
   const fs::path staging = folder / ".elastocal-killed";
   fs::create_directories(staging);
@@ -149,7 +149,7 @@ void LeaveCommitted(const fs::path& folder) {
 
 TEST_F(OutputSetTest, FinishesWhatAKilledRunHadCommitted) {
   WriteFiles({{folder_ / "a", "old"}, {folder_ / "b", "new"}, {folder_ / "c", "old"}});
-  LeaveCommitted(folder_);  // b has its name already
+  LeaveCommitted(folder_);  // b already has its final name
   RecoverOutputs(folder_);
   EXPECT_EQ(ReadFile(folder_ / "a"), "new");
   EXPECT_EQ(ReadFile(folder_ / "b"), "new");
@@ -174,7 +174,7 @@ TEST_F(OutputSetTest, LeavesARunAloneThatIsStillAtWork) {
   EXPECT_EQ(ReadFile(folder_ / "a"), "text");
 }
 
-/// Files that are all of one run have one text.
+/// The common text of all files; files of different runs have different texts.
 std::string OneText(const fs::path& folder) {
   const std::string text = ReadFile(folder / "0");
   for (int i = 1; i < 8; ++i) {
@@ -189,8 +189,8 @@ void WriteEight(const fs::path& folder, const std::string& text) {
   WriteFiles(files);
 }
 
-/// The delay is shortened after a run that finished and lengthened after one that did not: it stays
-/// about the moment at which the files get their names, however slow the machine is.
+/// The delay is shortened after a run that finished and lengthened after one that did not. So it
+/// stays close to the moment at which the files get their names, on a machine of any speed.
 TEST_F(OutputSetTest, AKilledRunLeavesOneRunsFiles) {
   WriteEight(folder_, "before");
   int finished = 0;
@@ -212,7 +212,7 @@ TEST_F(OutputSetTest, AKilledRunLeavesOneRunsFiles) {
     finished += text == written ? 1 : 0;
     delay *= text == written ? 0.83 : 1.25;
   }
-  EXPECT_GT(finished, 10);  // else nothing was tried
+  EXPECT_GT(finished, 10);  // otherwise nothing was tried
   EXPECT_LT(finished, 90);
 }
 

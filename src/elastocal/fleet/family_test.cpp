@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kSd = 1e-4;  // rad, of an estimate
+constexpr double kSd = 1e-4;  // rad, standard deviation of an estimate
 
 /// A robot of two joints.
 FleetMember MakeMember(const std::string& robot, double first, double second,
@@ -55,11 +55,11 @@ TEST(Family, ARobotUnlikeTheOthersIsNamedAndAFleetAlikeIsNot) {
     const auto& workshop = family.workshop;
     EXPECT_NE(std::find(workshop.begin(), workshop.end(), "r7"), workshop.end());
   }
-  EXPECT_LE(false_alarms, 20);  // 5 % are 10; 21 or more would have a chance of 0.1 %
+  EXPECT_LE(false_alarms, 20);  // 10 (5 %) are expected; the probability of 21 or more is 0.1 %
 }
 
 TEST(Family, ScatterBetweenRobotsIsWithoutThatOfTheirCalibrations) {
-  // Values 1, 2 and 3 mrad: variance 1e-6, of which 1e-8 are the estimates' own.
+  // The values are 1, 2 and 3 mrad. Their variance is 1e-6, of which 1e-8 belongs to the estimates.
   const FleetFamily family = StudyFamily(
       {MakeMember("a", 1e-3, 0.0), MakeMember("b", 2e-3, 0.0), MakeMember("c", 3e-3, 0.0)});
   ASSERT_EQ(family.parameters.size(), 2u);
@@ -76,7 +76,7 @@ TEST(Family, ABatchUnlikeTheOthersIsNamed) {
     if (r % 2 == 0) fleet[r].estimate.parameters[1].value += 8e-3;
   }
   const FleetFamily family = StudyFamily(fleet);
-  ASSERT_EQ(family.batches.size(), 2u);  // each against the other
+  ASSERT_EQ(family.batches.size(), 2u);  // each batch against the other
   EXPECT_EQ(family.batches[0].parameter, "two.theta");
   EXPECT_NEAR(std::abs(family.batches[0].difference), 8e-3, 3e-3);
 }
@@ -91,7 +91,7 @@ TEST(Family, DriftIsALineThroughTheSessions) {
   ASSERT_EQ(family.drifts.size(), 1u);
   EXPECT_EQ(family.drifts[0].robot, "a");
   EXPECT_NEAR(family.drifts[0].per_day, 2e-4 / 30.0, 1e-12);
-  // Days -45, -15, 15, 45 about the mean.
+  // The days are -45, -15, 15 and 45 from their mean.
   EXPECT_NEAR(family.drifts[0].sd, kSd / std::sqrt(2.0 * (45.0 * 45.0 + 15.0 * 15.0)), 1e-12);
   EXPECT_EQ(LastSessions(sessions).size(), 2u);
   EXPECT_EQ(LastSessions(sessions)[0].day, 90.0);
@@ -105,7 +105,7 @@ TEST(Family, PriorIsMeanUncertaintyAndScatter) {
   EXPECT_NEAR(prior.parameters[0].value, 2e-3, 1e-15);
   EXPECT_NEAR(prior.covariance(0, 0), 1e-8 + 2e-6 / 3.0, 1e-15);
   EXPECT_NEAR(prior.covariance(1, 1), 1e-8, 1e-20);
-  // Four robots more of the kind: both thetas scatter by a third of 1e-6 on average.
+  // The prior counts like four more robots: both thetas scatter by a third of 1e-6 on average.
   EXPECT_NEAR(FleetPrior(robots, 4.0).covariance(1, 1), 1e-8 + 4.0 / 7.0 * 1e-6 / 3.0, 1e-15);
   EXPECT_THROW(FleetPrior({robots[0], robots[1]}), InputError);
 }

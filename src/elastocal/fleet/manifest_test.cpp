@@ -43,7 +43,7 @@ TEST(Manifest, DaysMayBeDates) {
   };
   const auto tasks = read("2024-02-28", "2024-03-01");
   EXPECT_EQ(tasks[0].day, 19781.0);
-  EXPECT_EQ(tasks[1].day, 19783.0);  // a leap year
+  EXPECT_EQ(tasks[1].day, 19783.0);  // 2024 is a leap year
   ExpectInputError([&] { read("2023-02-28", "2023-02-29"); }, {"day", "a day of the calendar"});
   ExpectInputError([&] { read("2023-02-28", "12"); }, {"day", "a date, as the sessions above"});
   ExpectInputError([&] { read("12", "2023-02-28"); }, {"day", "a number of days, as"});

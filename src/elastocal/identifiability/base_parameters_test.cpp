@@ -23,7 +23,7 @@ Names NamesOf(const ErrorModel& model, const std::vector<int>& which) {
   return names;
 }
 
-/// Everything held that the paper holds by hand.
+/// All parameters that the paper holds by hand.
 const Names kHeldByThePaper = {"waist.T0.*", "leg_1.*", "leg_6.*"};
 
 IdentifiabilityOptions Options(const Names& hold, double tolerance = 1e-6) {
@@ -80,7 +80,7 @@ TEST(BaseParameters, ExternalLastKeepsOffsetsFirst) {
   IdentifiabilityOptions options;
   options.external = ExternalPriority::kLast;
   const BaseParameters base = FindBaseParameters(leg, options);
-  EXPECT_EQ(base.kept.size(), 51u);  // another choice of as many
+  EXPECT_EQ(base.kept.size(), 51u);  // a different choice of the same number
   for (const char* joint : {"leg_1", "leg_2", "leg_3", "leg_4", "leg_5", "leg_6"}) {
     const int theta = FindParameter(leg.parameters, std::string(joint) + ".theta");
     EXPECT_TRUE(std::binary_search(base.kept.begin(), base.kept.end(), theta)) << joint;
@@ -105,7 +105,7 @@ TEST(BaseParameters, PriorityAmongParametersOfTheSameEffect) {
                           std::back_inserter(both));
     return NamesOf(leg, both);
   };
-  // Held one after the other, each leaves its place to the next.
+  // Each parameter that is held leaves its place to the next one.
   using enum ExternalPriority;
   EXPECT_EQ(kept(kFirst, {}), Names{"waist.T0.d"});
   EXPECT_EQ(kept(kFirst, {"waist.*"}), Names{"marker.FOOT_1.x"});
@@ -129,7 +129,7 @@ TEST(BaseParameters, KeptDroppedAndHeldArePartsOfTheModelInOrder) {
   std::sort(all.begin(), all.end());
   for (int i = 0; i < leg.parameter_count(); ++i) EXPECT_EQ(all.at(i), i);
   EXPECT_EQ(base.held, MatchParameters(leg.parameters, {"leg_3.*", "*.z"}));
-  // A pattern may concern joints that this model does not have.
+  // A pattern may name joints that this model does not have.
   EXPECT_TRUE(FindBaseParameters(leg, Options({"leg_7.*"})).held.empty());
 }
 
@@ -150,7 +150,8 @@ TEST(BaseParameters, DroppedErrorsMoveMarkersAsTheKeptDoByTheRegrouping) {
         const Eigen::VectorXd q = RandomPosture(leg.tree, random);
         const Eigen::Matrix3Xd difference = MarkerPositions(leg, ApplyErrors(leg, dropped), q) -
                                             MarkerPositions(leg, ApplyErrors(leg, kept), q);
-        // Equal to first order (some 1e-4 m): what is left is of the order of the errors' square.
+        // The displacements (some 1e-4 m) are equal to first order. The rest is of the order of the
+        // squared errors.
         EXPECT_LT(difference.cwiseAbs().maxCoeff(), 5.0 * (eps * eps + kept.squaredNorm()))
             << leg.parameters[base.dropped[j]].name;
       }
@@ -173,7 +174,7 @@ TEST(BaseParameters, SharesOfADroppedParameterLeaveOutRounding) {
 }
 
 TEST(BaseParameters, ElasticParametersAreKeptAndChangeNothing) {
-  // The leg with everything elastic, and a branch that only carries.
+  // The leg with everything elastic, and a branch that does nothing but carry a load.
   const ErrorModel rigid = TalosLegModel();
   RobotTree tree = TalosLeg();
   AddJoint(tree, "other", 0, Offset(0, -0.2, 0), {0, 1, 0});
@@ -203,7 +204,7 @@ TEST(BaseParameters, ElasticParametersAreKeptAndChangeNothing) {
   EXPECT_EQ(base.geometric_count, static_cast<int>(geometric.size()));
   EXPECT_EQ(base.held.size(), 1u + 7u + 1u);
   EXPECT_EQ(base.theoretical_count, 51);
-  // Shares are those of the rigid model: the regrouping's rows follow `kept`.
+  // The shares must be those of the rigid model. (The rows of the regrouping follow `kept`.)
   const auto share = [](const ErrorModel& m, const BaseParameters& b, const std::string& name) {
     std::map<std::string, double> shares;
     for (std::size_t d = 0; d < b.dropped.size(); ++d) {
@@ -223,7 +224,8 @@ TEST(BaseParameters, ElasticParametersAreKeptAndChangeNothing) {
 }
 
 TEST(BaseParameters, AMarkerOnTheLastAxisLosesRank) {
-  // One marker a body; the foot's on the ankle roll axis does not move with that joint.
+  // Each body has one marker. The foot's marker is on the axis of the ankle roll, which does not
+  // move it.
   ErrorModel leg = SelectMarkers(TalosLegModel(), {"THIGH_1", "SHANK_1", "FOOT_1"});
   const BaseParameters generic = FindBaseParameters(leg, {});
   EXPECT_EQ(generic.theoretical_count, 4 * 6 + 3 * 3);
@@ -231,8 +233,8 @@ TEST(BaseParameters, AMarkerOnTheLastAxisLosesRank) {
   leg.markers[2].p_link_marker = {0.05, 0, 0};
   const BaseParameters base = FindBaseParameters(leg, {});
   EXPECT_EQ(base.theoretical_count, 33);
-  // What is known of the foot: where that point is on the body before, and how far the marker is
-  // from it across the axis; 3 + 2 instead of 4 + 3.
+  // The marker of the foot determines 3 + 2 parameters instead of 4 + 3: its place on the body
+  // before, and its distance from that point across the axis.
   EXPECT_EQ(base.kept.size(), 31u);
   EXPECT_EQ(NamesOf(leg, LostBySpecialMarkers(leg, {})), (Names{"leg_6.alpha", "leg_6.d"}));
 }
@@ -240,8 +242,8 @@ TEST(BaseParameters, AMarkerOnTheLastAxisLosesRank) {
 class BaseParametersOfRandomRobots : public testing::TestWithParam<int> {};
 
 TEST_P(BaseParametersOfRandomRobots, HaveTheTheoreticalCount) {
-  // Axes that nearly coincide or are nearly parallel included: eq. 1 with beta, and the general
-  // placement, lack no freedom of any joint.
+  // This includes axes that nearly coincide or are nearly parallel: eq. 1 with beta, and the
+  // general placement, describe every freedom of a joint.
   Random random(GetParam());
   std::vector<AxisRelation> relations = kUsualRelations;
   relations.push_back(AxisRelation::kCoaxial);

@@ -39,7 +39,7 @@ TEST(Excitation, OfAFactorWithKnownSingularValues) {
   const Excitation e = AssessExcitation(factor, {0, 1, 2}, 16, 0.2e-3);
   EXPECT_NEAR(e.indices.o1, 1.0, 1e-14);
   EXPECT_NEAR(e.indices.o3, 2.0, 1e-14);
-  // Columns at unit norm are orthonormal here.
+  // Columns that are scaled to unit norm are orthonormal here.
   EXPECT_NEAR(e.condition_all, 1.0, 1e-14);
   EXPECT_NEAR(e.condition_base, 1.0, 1e-14);
   EXPECT_LT((e.parameter_sd - 0.2e-3 * Eigen::Vector3d(1 / 8., 1 / 4., 1 / 2.)).norm(), 1e-17);
@@ -54,12 +54,12 @@ TEST(Excitation, StandardDeviationsAreThoseOfTheInverse) {
   const Eigen::MatrixXd information = R.transpose() * R;
   const Eigen::VectorXd expected = 0.5 * information.inverse().diagonal().cwiseSqrt();
   const Eigen::VectorXd sd = AssessExcitation(factor, base, 10, 0.5).parameter_sd;
-  // The explicit inverse loses the square of the units' ratio, 1e6 times 1e-16.
+  // The explicit inverse has an error of the squared ratio of the units, 1e6, times 1e-16.
   EXPECT_LT((sd.cwiseQuotient(expected).array() - 1.0).abs().maxCoeff(), 1e-9);
 }
 
 TEST(Excitation, DependentColumns) {
-  // The third column is the sum of the first two; the fourth is free of them.
+  // The third column is the sum of the first two. The fourth is independent of them.
   Eigen::MatrixXd factor(4, 4);
   factor << 1, 0, 1, 0,  //
       0, 1, 1, 0,        //

@@ -19,7 +19,7 @@ Eigen::MatrixXd Postures(const RobotTree& tree, int count) {
   return q;
 }
 
-/// Psi^T Psi of the whole regressor, rows of unseen markers zero.
+/// Psi^T Psi by the whole regressor, in which the rows of unseen markers are zero.
 Eigen::MatrixXd DenseProduct(const ErrorModel& model, const Geometry& geometry,
                              const Eigen::MatrixXd& q, const Seen& seen) {
   Eigen::MatrixXd psi(3 * model.marker_count() * q.rows(), model.parameter_count());
@@ -43,7 +43,7 @@ void ExpectFactor(const ErrorModel& model, const Eigen::MatrixXd& q, const Seen&
   ASSERT_EQ(R.cols(), model.parameter_count());
   EXPECT_LE(R.rows(), R.cols());
   EXPECT_TRUE(R.isUpperTriangular(0.0));
-  // Both products round to some 1e-16 of their norm, times the number of rows at worst.
+  // Both products round to some 1e-16 of their norm, at worst times the number of rows.
   EXPECT_LT((R.transpose() * R - expected).norm(), 1e-13 * expected.norm());
 }
 

@@ -33,7 +33,7 @@ class ExperimentTest : public testing::Test {
     ExpectInputError([&] { Parse(text); }, parts);
   }
 
-  /// One trial on line 1, with `more` among its keys.
+  /// Expects an error in a trial on line 1 that has `more` among its keys.
   void ExpectTrialError(const std::string& more, std::initializer_list<std::string> parts) const {
     ExpectError("trials: [{name: a, markers: a.tsv, joints: a.csv" + more + "}]", parts);
   }

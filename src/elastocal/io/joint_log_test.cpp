@@ -51,7 +51,7 @@ TEST(JointLog, ReadsPositionsAndTorques) {
   EXPECT_TRUE(log.torques.col(2).array().isNaN().all());
 }
 
-// As PlotJuggler exports a topic of joint states.
+// PlotJuggler exports a topic of joint states like this.
 TEST(JointLog, ReadsNamesThatArePathsOfATopic) {
   const JointLog log = ReadLog(
       "__time,/joint_states/elbow_joint/effort,/joint_states/elbow_joint/position,"
@@ -66,7 +66,7 @@ TEST(JointLog, ReadsNamesThatArePathsOfATopic) {
   ExpectLogError("__time,/joint_states/elbow_joint/position,elbow_joint\n0,1,2\n", {"elbow_joint"});
 }
 
-// Loggers write rows until the robot answers.
+// Some loggers write empty rows until the robot answers.
 TEST(JointLog, EmptyRowsAboveTheFirstSampleArePassedOver) {
   const std::string begin = "time,elbow_joint,elbow_joint_torque,turret_joint\n\n0.5,,,\n,nan,,\n";
   const JointLog log = ReadLog(begin + "1,0.1,5,0.2\n2,0.2,6,0.3\n");
@@ -160,7 +160,7 @@ TEST(JointLog, TimeIncreases) {
   ExpectLogError(header + "1,0\n2,0\n1.5,0\n", {"j.csv:4: ", "1.5 after 2"});
 }
 
-// Twenty rows and more, most of which would be a second apart or more, are in another unit.
+// A log of twenty or more rows of which most would be a second or more apart is in another unit.
 TEST(JointLog, TimeIsInTheUnitThatIsStated) {
   const auto text = [](const std::string& name, double unit) {
     std::string rows = name + ",elbow_joint\n";
@@ -177,14 +177,14 @@ TEST(JointLog, TimeIsInTheUnitThatIsStated) {
 TEST(JointLog, SuspectsDegrees) {
   ExpectLogError("t,elbow_joint\n1,0\n2,-45\n3,12\n",
                  {"j.csv:3: ", "'elbow_joint'", "-45", "degrees"});
-  // A prismatic joint is in metres, and two turns are 12.57 rad.
+  // A prismatic joint is in metres. Two turns are 12.57 rad.
   EXPECT_NO_THROW(ReadLog("t,elbow_joint,rail_joint\n1,12.5,0.5\n"));
   ExpectLogError("t,elbow_joint,rail_joint\n1,12.5,450\n",
                  {"j.csv:2: ", "'rail_joint'", "450", "millimetres; metres were expected"});
 }
 
-// A log that counts from -pi to pi jumps by a turn where the joint goes on; a sliding joint may be
-// anywhere, and what happened while rows were lost nobody knows.
+// A log that counts from -pi to pi jumps by a turn while the joint goes on. A sliding joint may be
+// anywhere. Turns during lost rows are unknown.
 TEST(JointLog, TurnsAreUnwrapped) {
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / "elastocal_wrapped_log.csv";

@@ -79,7 +79,8 @@ TEST(MotionFile, AListOfPosturesNeedsNeitherTimeNorMarkers) {
       ParsePostures("elbow_joint,turret_joint\n0.1,0.2\n-0.1,0.3\n", project);
   EXPECT_EQ(postures.time_s.size(), 0);
   EXPECT_EQ(postures.q.col(Coordinate(project, "turret_joint")), Eigen::Vector2d(0.2, 0.3));
-  // A posture table with markers serves as well; jumps are no speed there.
+  // A posture table with markers is accepted too. Jumps between its postures are not taken as
+  // speeds.
   const JointMotion table =
       ParsePostures("t,WRIST_x,WRIST_y,WRIST_z,elbow_joint\n1,,,,0.1\n1.001,0,0,0,1.1\n", project);
   EXPECT_EQ(table.sample_count(), 2);

@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-/// Reach 0.5 m, so RobotSize is 1 m.
+/// An arm with a reach of 0.5 m, so that RobotSize is 1 m.
 RobotTree Arm() {
   return ParseUrdf(
       "<robot name='r'><link name='a'/><link name='b'/><link name='c'/>"
@@ -34,7 +34,7 @@ Recording TwoPostures() {
   return recording;
 }
 
-/// A moves a little, C stands still beside it; B, without moving, is at `b`.
+/// Marker A moves a little and C stands still beside it. B stands still at `b`.
 Recording ThreeMarkers(const Eigen::RowVector3d& b) {
   Recording recording = TwoPostures();
   recording.marker_names = {"A", "B", "C"};
@@ -60,7 +60,7 @@ TEST(PostureChecks, NamesTheUnitsThatFitTheRobot) {
     recording.markers(1, 2) = range;
     ExpectInputError([&] { CheckPlausible(recording, Arm()); }, {said});
   };
-  // Ranges in other units; no two points of the arm are further apart than 1 m.
+  // The ranges are in other units: no two points of the arm are more than 1 m apart.
   expect(0.4 * 1000, "these look like millimetres; metres were expected");
   expect(0.7 * 100, "these look like centimetres; metres were expected");
   expect(0.4 * 39.37, "these look like inches or centimetres; metres were expected");
@@ -72,10 +72,10 @@ TEST(PostureChecks, NamesAMarkerInMillimetresThatStandsStill) {
   Recording recording = ThreeMarkers({0, 0, 3.1});
   ExpectInputError([&] { CheckPlausible(recording, Arm()); },
                    {"t.csv:2: marker 'B' is 3.1", "m from marker 'A'", "in another unit?"});
-  // Of two the one with the larger numbers.
+  // With two markers, the one with the larger coordinates is named.
   recording.markers.rightCols(3).setConstant(std::nan(""));
   ExpectInputError([&] { CheckPlausible(recording, Arm()); }, {"marker 'B' is 3.1", "'A'"});
-  // Never seen together with another one.
+  // These markers are never seen together.
   recording.markers.leftCols(3).setConstant(std::nan(""));
   recording.markers.row(0) << 0, 0, 0, Eigen::RowVectorXd::Constant(6, std::nan(""));
   EXPECT_NO_THROW(CheckPlausible(recording, Arm()));
@@ -120,7 +120,8 @@ TEST(PostureChecks, WarnsOfRepeatedRows) {
   EXPECT_EQ(RepetitionWarning(recording),
             "t.csv: lines 5, 6 and 2 more repeat lines above them: they count as independent "
             "measurements, which they are not");
-  // Another marker position is another measurement; no marker position is none.
+  // A posture with another marker position is another measurement. One without markers is no
+  // measurement.
   recording.markers(3, 2) = 1e-5;
   recording.markers.bottomRows(3).setConstant(std::nan(""));
   EXPECT_EQ(RepetitionWarning(recording), "");

@@ -19,7 +19,8 @@
 namespace elastocal {
 namespace {
 
-/// Markers A and B on the forearm, which rail, turret, shoulder and elbow move, T on the tool.
+/// Markers A and B are on the forearm, which rail, turret, shoulder and elbow move. T is on the
+/// tool.
 Project TableProject(const std::string& recording = "{}") {
   return ParseProject(
       "robot: {urdf: arm6.urdf}\n"
@@ -92,7 +93,7 @@ TEST(PostureTable, ReadsRenamedColumnsInAnyOrder) {
   EXPECT_EQ(table.recording.joints_not_recorded[0], "rail_joint");
 }
 
-/// Joints that move no recorded marker and mimic joints need no column.
+/// Mimic joints and joints that move no recorded marker need no column.
 TEST(PostureTable, FindsEveryKindOfColumn) {
   const Project project = ParseProject(
       "robot: {urdf: arm6.urdf}\n"
@@ -106,7 +107,7 @@ TEST(PostureTable, FindsEveryKindOfColumn) {
   EXPECT_EQ(recording.time_s[0], 7.0);
   EXPECT_EQ(recording.marker_names, std::vector<std::string>{"N"});
   EXPECT_EQ(MarkerPosition(recording, 0, 0), Eigen::Vector3d(1, 2, 3));
-  // Coordinates: rail, turret, shoulder, elbow, roll, bend, flange, left finger.
+  // The coordinates are rail, turret, shoulder, elbow, roll, bend, flange and left finger.
   Eigen::RowVectorXd q(8);
   q << 0.5, 0, 0, 0.25, 0, 0, 0, 0;
   EXPECT_EQ(recording.q, q);
@@ -124,7 +125,7 @@ TEST(PostureTable, EmptyMarkerCellsMeanNotSeen) {
   EXPECT_EQ(table.markers_not_recorded, (std::vector<std::string>{"B", "T"}));
   ASSERT_FALSE(table.warnings.empty());
   EXPECT_EQ(table.warnings[0], "marker B was never seen and is left out");
-  // As pandas writes it with na_rep.
+  // pandas writes such cells with na_rep.
   const PostureTable nan =
       ReadTable(header + "NaN,nan,NaN,,,,0,0,0,0,1\n1,2,3,NaN,NaN,NaN,0,0,0,0.1,1\n");
   EXPECT_FALSE(Seen(nan.recording, 0, 0));
@@ -186,13 +187,13 @@ TEST(PostureTable, SaysWhatARecordingOverTimeNeeds) {
 TEST(PostureTable, SaysWhatAJointLogNeeds) {
   ExpectTableError("t,elbow_joint,elbow_joint_torque\n0,0.1,2\n",
                    {"t.csv:1", "joint log", "folder with experiment.yaml"});
-  // A posture table with a column too many has no other name for it.
+  // An unknown column in a posture table gets the usual message.
   ExpectTableError("t,A_x,A_y,A_z,elbow_joint,elbow_joint_torque\n0,1,2,3,0.1,2\n",
                    {"unknown column 'elbow_joint_torque'"});
 }
 
 TEST(PostureTable, SuspectsMillimetresAndDegrees) {
-  // The arm reaches less than 2 m; a hand that moves by 400 mm is not 400 m away.
+  // The arm reaches less than 2 m. A hand that moves by 400 mm does not move by 400 m.
   ExpectTableError(kTableHeader + "1,100,2,3,0,0,0,0\n1,500,2,3,0,0,0,0.1\n",
                    {"t.csv", "marker 'A'", "400 m along x", "millimetres"});
   EXPECT_NO_THROW(ReadTable(kTableHeader + "1,1000,2,3,0,0,0,0\n1,1000.4,2,3,0,0,0,0.1\n"));
@@ -201,7 +202,8 @@ TEST(PostureTable, SuspectsMillimetresAndDegrees) {
 }
 
 TEST(PostureTable, WarnsOfJointsBeyondTheirLimits) {
-  // elbow: +-2.3 rad; rail: -0.5 to 0.6 m. A degree and 5 mm are allowed.
+  // The elbow turns by +-2.3 rad and the rail slides from -0.5 to 0.6 m. A degree and 5 mm beyond
+  // are allowed.
   const PostureTable table =
       ReadTable(kTableHeader + "1,1,2,3,0.604,0,0,2.31\n1,1,2,3,0.7,0,0,2.4\n1,1,2,3,0,0,0,-2.5\n");
   ASSERT_EQ(table.warnings.size(), 2u);
@@ -230,7 +232,8 @@ TEST(PostureTable, RefusesIdenticalMarkers) {
   EXPECT_NO_THROW(ReadTable(header + "1,2,3,1,2,3,0,0,0,0\n4,2,3,4,2,3.1,0,0,0,1\n"));
 }
 
-// As many programs write it; a marker that is there in all postures may define the frame.
+// Many programs write zeros for an unseen marker. But a marker that is at zero in all postures may
+// define the frame.
 TEST(PostureTable, MarkersAtExactlyZeroAreNotSeen) {
   const std::string header =
       "A_x,A_y,A_z,B_x,B_y,B_z,rail_joint,turret_joint,shoulder_joint,"
@@ -246,7 +249,7 @@ TEST(PostureTable, MarkersAtExactlyZeroAreNotSeen) {
             "line 3)");
 }
 
-/// Zeros without end, in a few shapes: each is refused by what comes first.
+/// Large files of zeros in several shapes. Each is refused by the first check that applies.
 TEST(PostureTable, RefusesALargeFileOfZeros) {
   const ScratchFolder scratch;
   const std::filesystem::path file = scratch.path() / "zeros.csv";
@@ -302,7 +305,7 @@ TEST(PostureTable, RefusesOneMarkerInAnotherUnit) {
             project);
       },
       {"t.csv", "marker N", "1000 times too small"});
-  // One that ranges over more than the robot's size is told by its distances as well.
+  // Distances also tell a marker whose coordinates range over more than the robot's size.
   ExpectInputError(
       [&] {
         ReadTable(

@@ -25,7 +25,7 @@ constexpr char kTwoTrials[] =
 
 class RecordingFolderTest : public testing::Test {
  protected:
-  /// Plays a trial into the files NAME.tsv and NAME.csv of the folder.
+  /// Plays a trial and writes it to the files NAME.tsv and NAME.csv of the folder.
   ScriptedTrial Write(const std::string& name, PlayOptions options) const {
     options.standing = FindLink(project_.tree, "right_sole");
     ScriptedTrial played = Play(MakeMarkedRobot(project_), options);
@@ -43,7 +43,7 @@ class RecordingFolderTest : public testing::Test {
   ScratchFolder folder_;
 };
 
-// Where the marker is by the sampled joint positions, in the frame that the player's cameras have.
+// The position of the marker by the sampled joint positions, in the frame of the player's cameras.
 Eigen::Vector3d Expected(const Project& project, const Recording& recording, int posture, int m) {
   const Eigen::VectorXd positions = PlayedPositions(
       MakeMarkedRobot(project), FindLink(project.tree, "right_sole"), recording.q.row(posture));
@@ -77,7 +77,7 @@ TEST_F(RecordingFolderTest, KeepsValidationApart) {
                 0.5e-3);
     }
   }
-  // Only the sensor of the project.
+  // The recording has torques only for the sensor of the project.
   for (Eigen::Index k = 0; k < recording.torques.cols(); ++k) {
     EXPECT_EQ(recording.torques.col(k).allFinite(), k == project_.torque_sensors[0]);
   }
@@ -101,7 +101,7 @@ TEST_F(RecordingFolderTest, TakesTheMarkersThatBelongToATrial) {
   EXPECT_EQ(names({0, 1}, {}), (std::vector<std::string>{"BACK", "HEAD", "LHAND"}));
 }
 
-/// Where a clock cannot be told, every mistake of a log is tried.
+/// If the lag of a clock cannot be told, every mistake of a log is tried.
 using RecordingFolderStudy = RecordingFolderTest;
 
 TEST_F(RecordingFolderStudy, GoesOnWithoutATrialThatItRefuses) {
@@ -174,7 +174,7 @@ TEST_F(RecordingFolderTest, NeedsEveryJointThatMovesAMarker) {
   played.log.torques = played.log.torques.leftCols(played.log.torques.cols() - 1).eval();
   WriteJointLog(folder_.path() / "a.csv", played.log);
   ExpectInputError([&] { Read(); }, {"a.csv", missing, "swing", "not_recorded_deg"});
-  // Where the project says that it stood still, the other log does not say that it did.
+  // The project says that the joint stood still, but the other log shows that it moved.
   project_.recording.not_recorded[missing] = 0.1;
   const RecordingFolder folder = Read();
   EXPECT_TRUE(folder.calibration.joints_not_recorded.empty());

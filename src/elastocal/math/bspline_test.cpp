@@ -11,7 +11,7 @@ namespace elastocal {
 namespace {
 
 TEST(QuinticSpline, WithSixControlPointsIsBernstein) {
-  // Without inner knots the basis is that of Bezier curves: C(5, i) u^i (1 - u)^(5 - i).
+  // Without inner knots, the basis is that of Bezier curves: C(5, i) u^i (1 - u)^(5 - i).
   const double u = 0.3, v = 0.7;
   Eigen::VectorXd expected(6);
   expected << v * v * v * v * v, 5 * u * v * v * v * v, 10 * u * u * v * v * v,
@@ -33,7 +33,8 @@ TEST(QuinticSpline, DerivativesAreDifferences) {
     const Eigen::VectorXd before = QuinticSplineBasis(11, place - step);
     const Eigen::VectorXd at = QuinticSplineBasis(11, place);
     const Eigen::VectorXd after = QuinticSplineBasis(11, place + step);
-    // The third and fourth derivative reach 1e5: 1e5 step^2 / 6; and rounding 1e-16 / step^2.
+    // Truncation is 1e5 step^2 / 6, because the third and fourth derivatives reach 1e5. Rounding is
+    // 1e-16 / step^2.
     EXPECT_LT(((after - before) / (2 * step) - QuinticSplineBasis(11, place, 1)).norm(), 1e-3);
     EXPECT_LT(((after - 2 * at + before) / (step * step) - QuinticSplineBasis(11, place, 2)).norm(),
               1e-2);
@@ -49,7 +50,8 @@ TEST(QuinticSpline, RestsAtBothEnds) {
   for (const double end : {0.0, 1.0}) {
     const Eigen::VectorXd value = control.transpose() * QuinticSplineBasis(11, end);
     EXPECT_EQ(value, end > 0.5 ? to : from);
-    // Differences of equal numbers; their sums with factors of some hundred round to 1e-13.
+    // The terms are differences of equal numbers. Their sums with factors of some hundred round to
+    // 1e-13.
     EXPECT_LT((control.transpose() * QuinticSplineBasis(11, end, 1)).norm(), 1e-12);
     EXPECT_LT((control.transpose() * QuinticSplineBasis(11, end, 2)).norm(), 1e-11);
   }

@@ -26,7 +26,7 @@ struct Case {
   std::vector<double> filtered;
 };
 
-// A case ends where the order or the cutoff changes.
+// Reads cases from a file. A new case begins where the order or the cutoff changes.
 std::vector<Case> ReadReference() {
   std::ifstream file(SourceFile("tests/signals/sosfiltfilt.csv"));
   std::vector<Case> cases;
@@ -52,7 +52,7 @@ Eigen::VectorXd ToVector(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-// Gain of the chain at a frequency, by its definition.
+// Gain of the chain of sections at a frequency, by its definition.
 double Gain(const SecondOrderSections& sections, double frequency_hz, double rate_hz) {
   const auto z = std::polar(1.0, -2.0 * std::numbers::pi * frequency_hz / rate_hz);
   std::complex<double> gain = 1.0;
@@ -69,7 +69,7 @@ TEST(FiltFilt, EqualsSciPy) {
   for (const Case& c : cases) {
     Eigen::MatrixXd signal = ToVector(c.signal);
     FiltFilt(ButterworthLowPass(c.order, c.cutoff_hz, c.rate_hz), signal);
-    // Asked for; rounding of the two orders of the sections is near 1e-13.
+    // The requirement. The two orders of the sections differ by rounding of about 1e-13.
     EXPECT_LT((signal - ToVector(c.filtered)).cwiseAbs().maxCoeff(), 1e-9)
         << "order " << c.order << ", " << c.signal.size() << " samples";
   }
@@ -83,9 +83,9 @@ TEST(FiltFilt, LeavesAStraightLineAndFiltersEachColumnForItself) {
   signals(500, 1) = 1.0;
   const Eigen::VectorXd line = signals.col(0);
   FiltFilt(sections, signals);
-  // What begins at the ends dies by exp(-0.097) a sample, so by 2e-13 over 300.
+  // A disturbance from the ends decays by exp(-0.097) a sample, so to 2e-13 over 300 samples.
   EXPECT_LT((signals.col(0) - line).segment(300, 400).cwiseAbs().maxCoeff(), 1e-11);
-  // Zero phase: the answer to an impulse is symmetric, and highest at it.
+  // With zero phase, the response to an impulse is symmetric and highest at the impulse.
   for (int k = 1; k < 200; ++k) EXPECT_NEAR(signals(500 - k, 1), signals(500 + k, 1), 1e-11);
   EXPECT_GT(signals(500, 1), signals(501, 1));
 }

@@ -17,7 +17,7 @@ Eigen::MatrixXd RandomMatrix(Eigen::Index rows, Eigen::Index columns) {
   return random.NormalVector(rows * columns, 1.0).reshaped(rows, columns);
 }
 
-/// Of sizes that are no multiples of what the kernels take at a time, and of an empty matrix.
+/// An empty matrix, and sizes that are no multiples of the blocks of the kernels.
 constexpr int kSizes[] = {0, 1, 3, 64, 65, 203};
 
 TEST(Dense, ProductIsTheSumOverTheInnerIndex) {
@@ -26,7 +26,7 @@ TEST(Dense, ProductIsTheSumOverTheInnerIndex) {
   EXPECT_EQ(Product(A, B), (Eigen::MatrixXd(2, 2) << 0.5, 7, 2, 16).finished());
   for (int size : kSizes) {
     const Eigen::MatrixXd C = RandomMatrix(size, 2 * size), D = RandomMatrix(2 * size, size + 1);
-    // Sums of 400 numbers of the order of one.
+    // The sums have 400 terms of the order of one.
     EXPECT_LT((Product(C, D) - C.lazyProduct(D)).norm(), 1e-12 * (1.0 + C.norm() * D.norm()));
   }
 }
@@ -57,7 +57,7 @@ TEST(Dense, InverseAndSolutionOfAPositiveMatrix) {
   for (int size : kSizes) {
     const Eigen::MatrixXd A = RandomMatrix(size, size);
     Eigen::MatrixXd S = A * A.transpose() + Eigen::MatrixXd::Identity(size, size);
-    Eigen::MatrixXd lower = S;  // what is above must not be read
+    Eigen::MatrixXd lower = S;  // the entries above the diagonal must not be read
     lower.triangularView<Eigen::StrictlyUpper>().setConstant(7.0);
     const Eigen::MatrixXd inverse = InverseOfPositive(lower);
     // The condition number is some hundreds.
@@ -68,7 +68,7 @@ TEST(Dense, InverseAndSolutionOfAPositiveMatrix) {
   }
 }
 
-// Rounding makes a badly conditioned matrix indefinite; callers need finite numbers then.
+// Rounding can make a badly conditioned matrix indefinite. Callers still need finite numbers.
 TEST(Dense, AMatrixThatIsNotPositiveHasItsInverseAllTheSame) {
   const Eigen::MatrixXd S = (Eigen::MatrixXd(2, 2) << 1, 2, 2, 1).finished();
   const Eigen::MatrixXd inverse = (Eigen::MatrixXd(2, 2) << -1, 2, 2, -1).finished() / 3.0;
@@ -77,7 +77,7 @@ TEST(Dense, AMatrixThatIsNotPositiveHasItsInverseAllTheSame) {
   EXPECT_LT((SolvePositive(S, B) - inverse * B).norm(), 1e-15);
 }
 
-// On an old processor the other kernels would run, which no test here sees otherwise.
+// An old processor would run the other kernels, which no other test here covers.
 TEST(Dense, KernelsForAnyProcessorAgree) {
   constexpr Eigen::Index kSize = 150;
   const Eigen::MatrixXd A = RandomMatrix(kSize, kSize);

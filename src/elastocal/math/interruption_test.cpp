@@ -20,7 +20,7 @@ struct Stop : std::runtime_error {
   Stop() : std::runtime_error("stop") {}
 };
 
-/// Work that only an interruption ends, or ten seconds.
+/// Works until it is interrupted, or for ten seconds.
 void WorkForLong() {
   const auto latest = steady_clock::now() + std::chrono::seconds(10);
   while (steady_clock::now() < latest) InterruptionPoint();
@@ -60,7 +60,7 @@ TEST(Interruption, IsNotForgottenWhereSomebodySwallowsIt) {
 }
 
 TEST(Interruption, EndsTheWorkOfAllThreadsOfForAll) {
-  // One task ends at once, so that the caller may be the thread that has nothing left to do.
+  // One task ends at once. So the calling thread may be the one that has nothing left to do.
   for (const std::size_t quick : {0u, 1u}) {
     std::atomic<int> begun = 0;
     const auto begin = steady_clock::now();

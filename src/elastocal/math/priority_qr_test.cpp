@@ -15,14 +15,14 @@ using Eigen::MatrixXd;
 using Indices = std::vector<int>;
 
 constexpr double kTolerance = 1e-6;
-// Roundings of numbers near 1 in matrices of some ten columns.
+// Accumulated rounding of numbers near 1 in matrices of some ten columns.
 constexpr double kQrRounding = 1e-13;
 
 MatrixXd RandomMatrix(int rows, int cols, std::uint64_t seed) {
   return Random(seed).NormalVector(rows * cols, 1.0).reshaped(rows, cols);
 }
 
-/// Product of random factors: rank `rank`, any `rank` columns independent.
+/// Product of random factors: its rank is `rank`, and any `rank` columns are independent.
 MatrixXd LowRank(int rows, int cols, int rank, std::uint64_t seed) {
   return RandomMatrix(rows, rank, seed) * RandomMatrix(rank, cols, seed + 1);
 }
@@ -52,7 +52,7 @@ TEST(PriorityQr, TheFirstColumnsWin) {
   const Eigen::MatrixXd A = LowRank(20, 6, 3, 1);
   EXPECT_EQ(PriorityQr(A, kTolerance).kept, (Indices{0, 1, 2}));
   MatrixXd B = A;
-  B.col(1) = 2.0 * A.col(0);  // now the fourth is needed
+  B.col(1) = 2.0 * A.col(0);  // now the fourth column is needed
   EXPECT_EQ(PriorityQr(B, kTolerance).kept, (Indices{0, 2, 3}));
   EXPECT_EQ(PriorityQr(B, kTolerance).dropped, (Indices{1, 4, 5}));
 }
@@ -62,7 +62,7 @@ TEST(PriorityQr, DroppedColumnsFollowFromTheKept) {
     const MatrixXd A = LowRank(30, 12, 7, 10 * seed);
     const PriorityQrResult qr = PriorityQr(A, kTolerance);
     EXPECT_EQ(qr.kept.size(), 7u);
-    // Random square matrices reach a condition number of 1e3 or so.
+    // Random square matrices have condition numbers up to about 1e3.
     ExpectRegrouping(A, qr, 1e3 * kQrRounding);
   }
 }
@@ -77,7 +77,7 @@ TEST(PriorityQr, UnitsOfColumnsDoNotMatter) {
   EXPECT_LT((a.remainder - b.remainder).norm(), kQrRounding);
   const MatrixXd expected =
       units(a.kept).cwiseInverse().asDiagonal() * a.regrouping * units(a.dropped).asDiagonal();
-  // Compared entry by entry: they reach from 1e-8 to 1e8.
+  // The entries are compared one by one because they range from 1e-8 to 1e8.
   EXPECT_LT((b.regrouping.cwiseQuotient(expected).array() - 1.0).abs().maxCoeff(), 1e-9);
 }
 
@@ -91,7 +91,7 @@ TEST(PriorityQr, AZeroColumnIsDroppedIntoNothing) {
 }
 
 TEST(PriorityQr, RoundingIsNoColumn) {
-  // As of a rotation about an axis through the point that it should move.
+  // A rotation about an axis through the point that it should move gives such a column.
   MatrixXd A = RandomMatrix(5, 3, 5);
   A.col(1) *= 1e-16;
   const PriorityQrResult qr = PriorityQr(A, kTolerance);
@@ -100,7 +100,7 @@ TEST(PriorityQr, RoundingIsNoColumn) {
 }
 
 TEST(PriorityQr, TheToleranceIsRelativeToTheColumn) {
-  // The second column is 1e-4 off the first, whatever its length.
+  // The second column differs by 1e-4 from the direction of the first, whatever its length.
   MatrixXd A(2, 2);
   A << 1, 50, 0, 50e-4;
   EXPECT_EQ(PriorityQr(A, 0.9e-4).kept.size(), 2u);

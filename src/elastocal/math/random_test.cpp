@@ -12,14 +12,14 @@ namespace {
 constexpr int kCount = 100000;
 
 TEST(Random, FirstUniformNumbersAreThoseOfTheStandardsGenerator) {
-  // The first number of std::mt19937_64 from its default seed, 14514284786278117030, of which the
-  // upper 53 bits count.
+  // From its default seed, std::mt19937_64 first gives 14514284786278117030, of which the upper 53
+  // bits count.
   EXPECT_EQ(Random(5489).Uniform(0.0, 1.0), std::ldexp(14514284786278117030ull >> 11, -53));
 }
 
 TEST(Random, FirstNormalNumbers) {
-  // Box and Muller's formula on the generator's first numbers; sqrt, log and cos may round
-  // differently elsewhere.
+  // Box and Muller's formula on the generator's first numbers. Other platforms may round sqrt, log
+  // and cos differently.
   Random uniform(7), random(7);
   for (int i = 0; i < 10; ++i) {
     const double u1 = uniform.Uniform(0.0, 1.0), u2 = uniform.Uniform(0.0, 1.0);
@@ -41,7 +41,8 @@ TEST(Random, UniformMoments) {
   for (double& value : values) value = random.Uniform(-1.0, 3.0);
   EXPECT_GE(values.minCoeff(), -1.0);
   EXPECT_LT(values.maxCoeff(), 3.0);
-  // Within 5 standard errors: of the mean sd / sqrt(n), of the variance sqrt(4/5) var / sqrt(n).
+  // Tolerances of 5 standard errors: sd / sqrt(n) for the mean, sqrt(4/5) var / sqrt(n) for the
+  // variance.
   const double variance = 16.0 / 12.0;
   EXPECT_NEAR(values.mean(), 1.0, 5.0 * std::sqrt(variance / kCount));
   EXPECT_NEAR((values.array() - 1.0).square().mean(), variance,
@@ -51,8 +52,8 @@ TEST(Random, UniformMoments) {
 TEST(Random, NormalMoments) {
   Random random(2);
   const Eigen::ArrayXd values = random.NormalVector(kCount, 3.0).array() / 3.0;
-  // Within 5 standard errors of the first four moments 0, 1, 0, 3; their variances are 1, 2, 15
-  // and 96 over n.
+  // The first four moments are 0, 1, 0 and 3; the variances of their estimates are 1, 2, 15 and 96
+  // over n. Tolerances are 5 standard errors.
   EXPECT_NEAR(values.mean(), 0.0, 5.0 * std::sqrt(1.0 / kCount));
   EXPECT_NEAR(values.square().mean(), 1.0, 5.0 * std::sqrt(2.0 / kCount));
   EXPECT_NEAR(values.cube().mean(), 0.0, 5.0 * std::sqrt(15.0 / kCount));
@@ -63,7 +64,7 @@ TEST(Random, IndexIsUniform) {
   Random random(3);
   std::vector<int> counts(7, 0);
   for (int i = 0; i < kCount; ++i) ++counts.at(random.Index(7));
-  // Within 5 standard deviations of a binomial number.
+  // The tolerance is 5 standard deviations of a binomial number.
   const double p = 1.0 / 7.0;
   for (int count : counts) EXPECT_NEAR(count, p * kCount, 5.0 * std::sqrt(p * (1 - p) * kCount));
 }

@@ -10,8 +10,8 @@
 namespace elastocal {
 namespace {
 
-/// Two rooms of 2 m x 2 m on either side of a wall at x = 0, which is 0.2 m thick and has a door of
-/// the given width at its upper end.
+/// Two rooms of 2 m x 2 m with a wall between them at x = 0. The wall is 0.2 m thick and has a door
+/// of the given width at its upper end.
 FreeSpace Rooms(double door) {
   FreeSpace space;
   space.lower = Eigen::Vector2d(-2.0, 0.0);
@@ -37,7 +37,7 @@ TEST(ConnectByTrees, GoesThroughTheDoor) {
     EXPECT_TRUE(StraightWayIsFree(rooms, a, b)) << i;
     length += (b - a).norm();
   }
-  // The shortest one is 3.20 m long; unneeded corners are cut off.
+  // The shortest path is 3.20 m long. Unneeded corners are cut off.
   EXPECT_LT(length, 5.0);
   EXPECT_LE(corners->rows(), 6);
   EXPECT_EQ(ConnectByTrees(rooms, kHere, kThere), corners);
@@ -45,7 +45,7 @@ TEST(ConnectByTrees, GoesThroughTheDoor) {
 
 TEST(ConnectByTrees, FindsNothingWhereNothingIs) {
   EXPECT_FALSE(ConnectByTrees(Rooms(0.0), kHere, kThere));
-  // Where all is free, the straight way is left.
+  // In free space only the straight path remains.
   FreeSpace open = Rooms(0.0);
   open.free = [](const Eigen::VectorXd&) { return true; };
   EXPECT_EQ(ConnectByTrees(open, kHere, kThere)->rows(), 2);
@@ -58,7 +58,7 @@ TEST(ReachableSpace, IsTheRoomsThatADoorJoins) {
     Eigen::Vector2d x;
     x[0] = random.Uniform(-2.0, 2.0);
     x[1] = random.Uniform(0.0, 2.0);
-    if (!Rooms(0.0).free(x)) continue;  // in the wall or the door
+    if (!Rooms(0.0).free(x)) continue;  // inside the wall or the door
     EXPECT_TRUE(joined.Reaches(x)) << x.transpose();
     EXPECT_EQ(closed.Reaches(x), x[0] < 0.0) << x.transpose();
   }
@@ -66,7 +66,7 @@ TEST(ReachableSpace, IsTheRoomsThatADoorJoins) {
 
 TEST(AlongPolygon, IsAtEqualDistances) {
   Eigen::MatrixXd corners(4, 2);
-  corners << 0, 0, 3, 0, 3, 0, 3, 1;  // one corner twice
+  corners << 0, 0, 3, 0, 3, 0, 3, 1;  // one corner occurs twice
   Eigen::MatrixXd wanted(3, 2);
   wanted << 1, 0, 2, 0, 3, 0;
   EXPECT_LT((AlongPolygon(corners, 3) - wanted).norm(), 1e-12);

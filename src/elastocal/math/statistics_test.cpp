@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-// Printed tables give four or more digits; half of the last one.
+// Printed tables give four or more digits. The tolerance is half a unit of the last one.
 TEST(StudentQuantile, AgreesWithTables) {
   EXPECT_NEAR(StudentQuantile(0.975, 1), 12.7062, 5e-5);
   EXPECT_NEAR(StudentQuantile(0.975, 10), 2.2281, 5e-5);

@@ -19,7 +19,7 @@ constexpr double kHalfPi = M_PI / 2.0;
 
 Matrix3d FromRpy(const Vector3d& rpy) { return FromXyzRpy(Vector3d::Zero(), rpy).linear(); }
 
-/// Largest entry of the difference between R and its representation near `near`.
+/// Largest entry of the difference between R and the rotation of its angles near `near`.
 double RoundTripError(const Matrix3d& R, const Vector3d& near) {
   return (FromRpy(ToRpy(R, near)) - R).cwiseAbs().maxCoeff();
 }
@@ -43,7 +43,7 @@ TEST(Transform, TranslationsAreAlongTheTurnedAxes) {
 }
 
 TEST(Transform, UrdfOriginTurnsAboutFixedAxesRollFirst) {
-  // Roll takes y to z, yaw leaves z; roll leaves x, yaw takes it to y.
+  // Roll turns y to z, which yaw keeps. Roll keeps x, which yaw turns to y.
   const Transform T = FromXyzRpy({10, 20, 30}, {kHalfPi, 0, kHalfPi});
   EXPECT_LT((T * Vector3d::UnitY() - Vector3d(10, 20, 31)).norm(), 40 * kTransformRounding);
   EXPECT_LT((T * Vector3d::UnitX() - Vector3d(10, 21, 30)).norm(), 40 * kTransformRounding);
@@ -57,8 +57,8 @@ TEST(Transform, SkewIsTheCrossProduct) {
 TEST(ToRpy, ReturnsTheAnglesThatARotationWasMadeOf) {
   Random random(1);
   for (int i = 0; i < 1000; ++i) {
-    // Beyond one turn, and on both sides of pitch = +-90 degrees: `near` decides which of all the
-    // representations it is. The angles amplify rounding by 1 / cos(pitch).
+    // The angles go beyond one turn and to both sides of pitch = +-90 degrees: `near` selects one
+    // of all representations. The angles amplify rounding by 1 / cos(pitch).
     Vector3d rpy;
     for (double& angle : rpy) angle = random.Uniform(-7.0, 7.0);
     const double amplification = 1.0 / std::abs(std::cos(rpy.y()));
@@ -79,7 +79,7 @@ TEST(ToRpy, TakesTheNearerOfTheTwoRepresentations) {
 }
 
 TEST(ToRpy, KeepsRollAndPitchAndYawOfAGivenOriginAtTheSingularity) {
-  // What a URDF may hold: the corrected origin must not turn roll into yaw.
+  // A URDF may hold such angles. The corrected origin must not turn roll into yaw.
   for (double pitch : {kHalfPi, -kHalfPi}) {
     const Vector3d rpy(0.7, pitch, -0.4);
     EXPECT_LT((ToRpy(FromRpy(rpy), rpy) - rpy).norm(), 4 * kTransformRounding);
@@ -87,7 +87,7 @@ TEST(ToRpy, KeepsRollAndPitchAndYawOfAGivenOriginAtTheSingularity) {
 }
 
 TEST(ToRpy, RoundTripNearTheSingularity) {
-  // However near, and whatever roll is wanted: a calibrated URDF is checked to 1e-9.
+  // A calibrated URDF is checked to 1e-9, however near the singularity and for any wanted roll.
   for (double side : {1.0, -1.0}) {
     for (double distance : {0.0, 1e-16, 1e-14, 1e-12, 1e-10, 1e-9, 1e-8, 1e-4}) {
       const Matrix3d R = FromRpy({0.7, side * (kHalfPi - distance), -0.4});
@@ -125,7 +125,7 @@ TEST(RotationAngle, IsExactAtBothEnds) {
     EXPECT_NEAR(RotationAngle(RotAxis(axis, -angle).linear()), angle, 2 * kTransformRounding)
         << angle;
   }
-  // Small angles to relative precision as well.
+  // Small angles have relative precision as well.
   EXPECT_NEAR(RotationAngle(RotZ(1e-12).linear()), 1e-12, 1e-24);
   EXPECT_NEAR(RotationAngle(RotX(M_PI).linear()), M_PI, kTransformRounding);
 }

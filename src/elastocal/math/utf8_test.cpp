@@ -12,8 +12,8 @@ TEST(Utf8, KnowsTextFromOtherBytes) {
   for (const char* text : {"", "plain", "\u00e9", "\u20ac", "\U0001F916", "\xEF\xBB\xBF(mark)"}) {
     EXPECT_TRUE(IsUtf8(text)) << text;
   }
-  // Latin-1, a lone and a missing continuation, an overlong '/', half a surrogate pair, beyond
-  // U+10FFFF.
+  // Latin-1, a lone and a missing continuation byte, an overlong '/', half a surrogate pair, and a
+  // code point beyond U+10FFFF.
   for (const char* text :
        {"\xe9t\xe9", "\xa9", "\xc3", "\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80"}) {
     EXPECT_FALSE(IsUtf8(text)) << text;
@@ -31,7 +31,7 @@ TEST(Printable, LeavesTextAndTakesTheRest) {
   EXPECT_EQ(Printable("a\tb\n\u00e9\u20ac\U0001F916"), "a\tb\n\u00e9\u20ac\U0001F916");
   EXPECT_EQ(Printable("caf\xe9!"), "caf\uFFFD!");
   EXPECT_EQ(Printable("\xff\xfe"), "\uFFFD\uFFFD");
-  // The beginnings of commands to a terminal, in 7 and in 8 bits.
+  // The first bytes of terminal commands, in 7 and in 8 bits.
   EXPECT_EQ(Printable("\x1b[2J\r\x7f"), "?[2J??");
   EXPECT_EQ(Printable("\u009b2J"), "?2J");
 }

@@ -19,7 +19,7 @@ namespace {
 constexpr double kPlayedLag_s = 0.8;
 constexpr double kPlayedDrift_ppm = 30.0;
 
-// As it is: all joints a degree and some millimetres from where they should be.
+// The leg as it is built: each joint is off by a degree and some millimetres.
 MarkedRobot LegAsBuilt(std::uint64_t seed) {
   MarkedRobot robot = MarkedTalosLeg();
   Random random(seed);
@@ -38,7 +38,8 @@ struct ToldClocks {
 
 using Change = std::function<void(ClockFit&)>;
 
-// Standing on the foot, in slow motion between postures. `change`: of what the speeds tell.
+// Plays slow motions between postures while the foot stands. `change` alters the clock that the
+// speeds tell.
 ToldClocks Tell(const MarkedRobot& built, PlayOptions options, const ClockOptions& clock = {},
                 const Change& change = {}) {
   options.standing = 6;
@@ -69,7 +70,7 @@ PlayOptions SlowMotion(std::uint64_t seed) {
           .seed = seed};
 }
 
-// Errors of the robot take the speeds off by milliseconds.
+// Errors of the robot shift the clock that speeds tell by milliseconds.
 TEST(RefineClockStudy, IsHardlyDisturbedByErrorsOfTheRobot) {
   double by_speed = 0.0;
   double by_positions = 0.0;
@@ -106,7 +107,7 @@ TEST(RefineClock, JudgesByTheSameBound) {
   EXPECT_EQ(clocks.by_positions.state, ClockState::kImprecise);
 }
 
-// Speeds leave the choice between two lags, the first of which is another by five seconds.
+// Speeds leave two lags to choose from, of which the first is wrong by five seconds.
 TEST(RefineClock, ChoosesOfTwoLags) {
   const ToldClocks clocks = Tell(LegAsBuilt(2), SlowMotion(2), {}, [](ClockFit& clock) {
     clock.state = ClockState::kAmbiguous;
@@ -125,7 +126,7 @@ TEST(RefineClock, DoesNotChooseBetweenLagsThatAreAlike) {
   EXPECT_EQ(clocks.by_positions.state, ClockState::kAmbiguous);
 }
 
-// Three postures are over before the scatter of anything is known.
+// Three postures give too little data to estimate the scatter.
 TEST(RefineClock, LeavesAShortTrialAsItWas) {
   PlayOptions options = SlowMotion(1);
   options.postures = 4;

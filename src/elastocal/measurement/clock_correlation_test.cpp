@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-// A bump of unit height and 0.5 s at t = 0.
+// A bump of height 1 and standard deviation 0.5 s at t = 0.
 double Bump(double t) { return std::exp(-t * t / (2.0 * 0.25)); }
 
 UniformSpeed Bumps(double start_s, int count, double first, double second, double height) {
@@ -35,14 +35,15 @@ TEST(Resample, InterpolatesAndLeavesHolesOpen) {
 }
 
 TEST(Correlate, FindsBothPeaks) {
-  // Bumps at 10 and 15 s, the second half as high: shifted by 5 s the high ones meet low ones.
+  // Bumps at 10 and 15 s, of which the second is half as high. A shift by 5 s puts a high one on a
+  // low one.
   const UniformSpeed measured = Bumps(0.0, 4000, 10.0, 15.0, 0.5);
   const UniformSpeed predicted = Bumps(100.0, 4000, 107.23, 112.23, 0.5);
   const CorrelationPeaks peaks = Correlate(measured, predicted, {.expected_lag_s = -100.0});
   ASSERT_TRUE(peaks.overlap);
-  EXPECT_NEAR(peaks.lag_s, -97.23, 0.005);  // a parabola over steps of 0.05 s
+  EXPECT_NEAR(peaks.lag_s, -97.23, 0.005);  // the top of a parabola through steps of 0.05 s
   EXPECT_NEAR(peaks.peak, 1.0, 2e-3);
-  // Of the energy 1 + 0.25, the shift keeps 0.5: 0.4, less what the means take.
+  // The shift keeps 0.5 of the energy 1 + 0.25, which is 0.4. Subtracting the means makes it less.
   EXPECT_NEAR(peaks.second_peak, 0.35, 0.05);
   EXPECT_FALSE(peaks.at_the_rim);
 }

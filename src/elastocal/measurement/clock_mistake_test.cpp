@@ -15,7 +15,7 @@
 namespace elastocal {
 namespace {
 
-/// A leg in ten postures, 50 s; `change` spoils the times of its log, or the log.
+/// Records a leg in ten postures for 50 s. `change` spoils its log, for instance the times.
 class ClockMistakes : public testing::Test {
  protected:
   static std::optional<ClockMistake> Find(const std::function<void(JointLog&)>& change,
@@ -73,7 +73,7 @@ TEST_F(ClockMistakes, AJumpIsNamedWithItsSizeAndPlace) {
       const Eigen::Index cut = (log.time_s.array() < 25.0).count();
       for (Eigen::Index i = cut; i < log.time_s.size(); ++i) log.time_s[i] += jump;
       if (jump > 0.0) return;
-      // The rows of these seconds are missing, and nothing shows it.
+      // The rows of these seconds are missing, and nothing in the log shows it.
       const auto lost =
           (log.time_s.tail(log.time_s.size() - cut).array() <= log.time_s[cut - 1]).count();
       const Eigen::Index tail = log.time_s.size() - cut - lost;
@@ -93,7 +93,7 @@ TEST_F(ClockMistakes, AJumpIsNamedWithItsSizeAndPlace) {
   }
 }
 
-// Parts of a few motions fit somewhere by chance.
+// In short motions some parts fit somewhere by chance.
 TEST_F(ClockMistakesStudy, TheLogOfAnotherMotionHasNone) {
   for (const int postures : {5, 8}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {

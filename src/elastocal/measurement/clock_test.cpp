@@ -30,8 +30,8 @@ struct Clocks {
 
 using Speed = std::function<double(double)>;  // m/s at a camera time
 
-// Postures 5 s apart, each reached by minimum-jerk motion in 4 s at a speed of its own, of a robot
-// at rest before and after `duration`.
+// Speed of a robot that goes to a new posture every 5 s, by minimum-jerk motions of 4 s with
+// different speeds. It rests before the first and after `duration`.
 Speed Postures(double duration) {
   Random random(11);
   std::vector<double> reach(static_cast<std::size_t>(duration / 5.0) + 1);
@@ -54,7 +54,7 @@ MeasuredSpeed Measure(const Speed& speed, double duration, double noise, double 
   return measured;
 }
 
-// Logged at 200 Hz from one to another robot time.
+// The speed as logged at 200 Hz from one robot time to another.
 PredictedSpeed Predict(const Speed& speed, const Clocks& clocks, double begin, double end) {
   const auto count = static_cast<Eigen::Index>((end - begin) * 200.0);
   PredictedSpeed predicted{Eigen::VectorXd::LinSpaced(count, begin, end), Eigen::VectorXd(count)};
@@ -79,9 +79,9 @@ TEST(EstimateClock, FindsLagAndDriftInNoise) {
       EXPECT_EQ(fit.state, ClockState::kReliable) << Describe(fit);
       EXPECT_TRUE(fit.drift_estimated);
       const double error = LargestError(fit, clocks, 600.0);
-      EXPECT_LT(error, 2e-3);  // asked for; the standard deviation is near 0.7 ms
+      EXPECT_LT(error, 2e-3);  // the requirement; the standard deviation is near 0.7 ms
       EXPECT_LT(error, 5.0 * fit.sd_s + 1e-5);
-      EXPECT_NEAR(fit.drift_ppm, clocks.drift_ppm, 5.0);  // one standard deviation is 1.9 ppm
+      EXPECT_NEAR(fit.drift_ppm, clocks.drift_ppm, 5.0);  // the standard deviation is 1.9 ppm
       EXPECT_GT(fit.peak, 0.98);
       EXPECT_LT(fit.line_residual_s, 0.002);
     }
@@ -99,7 +99,7 @@ TEST(EstimateClockStudy, SaysHowSureItIs) {
     square += std::pow(fit.RobotTime(0.0) - clocks.RobotTime(0.0), 2);
     claimed += fit.sd_s * fit.sd_s;
   }
-  // The scatter of 40 draws is known to 11 %, and sd_s is at the worse end of the trial.
+  // 40 draws tell their scatter to 11 %. `sd_s` is that at the worse end of the trial.
   EXPECT_NEAR(std::sqrt(square / claimed), 0.95, 0.35);
 }
 
@@ -108,7 +108,7 @@ TEST(EstimateClock, IsExactWithoutNoise) {
   const Clocks clocks;
   const ClockFit fit =
       EstimateClock(Measure(speed, 200.0, 0.0, 0.0), Predict(speed, clocks, 0.0, 200.0), {});
-  // Linear interpolation of the log rounds the starts of the motion by some 1e-5 m/s.
+  // Linear interpolation of the log smooths the beginning of the motion by some 1e-5 m/s.
   EXPECT_LT(LargestError(fit, clocks, 200.0), 2e-5);
 }
 
@@ -123,7 +123,7 @@ TEST(EstimateClock, TakesALogThatEndsEarlyOrHasAHole) {
 
   PredictedSpeed holey = Predict(speed, clocks, 0.0, 600.0);
   const PredictedSpeed whole = holey;
-  const Eigen::Index kept = holey.time_s.size() - 20000;  // 100 s from the middle
+  const Eigen::Index kept = holey.time_s.size() - 20000;  // a gap of 100 s in the middle
   holey.time_s = Eigen::VectorXd(kept);
   holey.values = Eigen::VectorXd(kept);
   holey.time_s << whole.time_s.head(50000), whole.time_s.tail(kept - 50000);
@@ -199,7 +199,7 @@ TEST(EstimateClock, LeavesOutOneBadWindow) {
   const Speed speed = Postures(300.0);
   const Clocks clocks{2.0, 20.0};
   MeasuredSpeed measured = Measure(speed, 300.0, 0.005, 0.0);
-  // For 20 s the cameras saw everything a tenth of a second late.
+  // For 20 s, the cameras see everything a tenth of a second late.
   const Eigen::VectorXd late = measured.values.segment(8000, 2000);
   measured.values.segment(8010, 1990) = late.head(1990);
   const ClockFit fit = EstimateClock(measured, Predict(speed, clocks, 0.0, 300.0), {});

@@ -24,7 +24,7 @@ TEST(FitWindowLag, FindsTheLagWhateverGainAndOffset) {
   const UniformSpeed predicted = Waves(-1.0, 2400, 0.0, 1.0, 0.0);
   const auto lag = FitWindowLag(measured, predicted, {0, 2000}, 0.1);
   ASSERT_TRUE(lag.has_value());
-  EXPECT_NEAR(lag->lag_s, 0.2, 1e-5);  // interpolation of waves of 200 samples
+  EXPECT_NEAR(lag->lag_s, 0.2, 1e-5);  // error of interpolating waves of 200 samples
   EXPECT_NEAR(lag->time_s, 10.0, 1.0);
 }
 
@@ -44,8 +44,8 @@ TEST(FitWindowLag, RefusesRestAndOtherMotion) {
 }
 
 TEST(FitWindowLag, SettlesWhereAFrameAtTheRimComesAndGoes) {
-  // With the frame the best lag is beyond what the frame is known at, without it the best lag is
-  // one that it is known at.
+  // With this frame, the best lag is one at which the frame has no counterpart. Without it, the
+  // best lag is one at which the frame has one.
   constexpr int kRim = 500;
   UniformSpeed measured = Waves(0.0, 2000, 0.2, 1.0, 0.0);
   const double at_rim = measured.values[kRim];
@@ -79,13 +79,14 @@ TEST(FitLine, IsNotMovedByOutliers) {
   }
   EXPECT_NEAR(line.Lag(0.0), 4.0, 4.0 * line.Sd(0.0));
   EXPECT_NEAR(line.slope, -50e-6, 4.0 * line.slope_sd);
-  // At the end of a line, twice 2e-4 / sqrt(26); the scatter of 30 is known to a quarter.
+  // At the end of a line, the standard deviation is twice 2e-4 / sqrt(26). 30 windows tell the
+  // scatter to a quarter.
   EXPECT_NEAR(line.Sd(0.0), 0.8e-4, 0.4e-4);
   EXPECT_NEAR(line.residual_s, 2e-4, 0.8e-4);
 }
 
 TEST(FitLine, IsNotRuledByWindowsThatClaimToBeSure) {
-  // Errors of 5 ms in all windows, which claim anything from 0.2 to 5 ms.
+  // All windows have errors of 5 ms but claim standard deviations from 0.2 to 5 ms.
   Random random(9);
   double square = 0.0;
   double claimed = 0.0;
@@ -99,7 +100,8 @@ TEST(FitLine, IsNotRuledByWindowsThatClaimToBeSure) {
     square += std::pow(line.Lag(300.0) - 1.0, 2) / 200.0;
     claimed += std::pow(line.Sd(300.0), 2) / 200.0;
   }
-  // The mean of 30 has 0.91 ms; robustness and uneven weights may cost a quarter of that.
+  // The mean of 30 windows has a standard deviation of 0.91 ms. Robustness and uneven weights may
+  // cost a quarter more.
   EXPECT_LT(std::sqrt(square), 1.15e-3);
   EXPECT_NEAR(std::sqrt(claimed / square), 1.0, 0.2);
 }

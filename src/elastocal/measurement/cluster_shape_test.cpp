@@ -34,7 +34,7 @@ TEST(MeasureDistances, GivesThePairsAndNanForHiddenMarkers) {
   EXPECT_DOUBLE_EQ(table(0, 2), std::sqrt(29.0));
   EXPECT_DOUBLE_EQ(table(1, 0), 1.0);
   EXPECT_TRUE(std::isnan(table(1, 1)) && std::isnan(table(1, 2)));
-  // In another order, other columns.
+  // Another order of markers gives another order of columns.
   EXPECT_DOUBLE_EQ(MeasureDistances(trajectories, {2, 0, 1})(0, 0), 2.0);
 }
 
@@ -62,7 +62,7 @@ TEST(MeasureShape, FindsDistancesTolerancesAndSeparation) {
 
 TEST(MeasureShape, TakesTheDistanceOfTheLongerPart) {
   DistanceTable table = NoisyTriangle(3000);
-  table.col(0).tail(1400).array() += 0.005;  // the median of all is at the rim of the first part
+  table.col(0).tail(1400).array() += 0.005;  // the median of all is at the edge of the first part
   const ClusterShape shape = MeasureShape(table, 3, 6.0, 1e-6);
   EXPECT_NEAR(shape.distances[0], 0.03, 1e-5);
   EXPECT_NEAR(shape.tolerances[0], 6e-4, 0.6e-4);
@@ -76,11 +76,11 @@ TEST(MeasureShape, SeesNoSeparationInAnIsoscelesTriangle) {
 
 TEST(ClusterShape, FitsUnderTheRightOrderOnly) {
   const ClusterShape shape = MeasureShape(NoisyTriangle(1000), 3, 6.0, 1e-6);
-  const Eigen::RowVector3d exchanged(0.03, 0.05, 0.04);  // labels 0 and 1
+  const Eigen::RowVector3d exchanged(0.03, 0.05, 0.04);  // labels 0 and 1 are exchanged
   EXPECT_FALSE(shape.Fits(exchanged, {0, 1, 2}));
   EXPECT_TRUE(shape.Fits(exchanged, {1, 0, 2}));
   EXPECT_FALSE(shape.Fits(exchanged, {2, 1, 0}));
-  EXPECT_TRUE(shape.Fits(exchanged, {0, 1, 2}, 2));  // the distance of 0 and 1 is left
+  EXPECT_TRUE(shape.Fits(exchanged, {0, 1, 2}, 2));  // the distance between 0 and 1 still fits
   EXPECT_FALSE(shape.Fits(exchanged, {0, 1, 2}, 1));
 }
 

@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-/// 50 positions over 5 rad that have no step.
+/// 50 positions over 5 rad without a common step.
 Eigen::VectorXd Positions() {
   Eigen::VectorXd column(50);
   for (int i = 0; i < 50; ++i) column[i] = 2.5 * std::sin(1.0 + 37.0 * i * i);
@@ -21,14 +21,14 @@ TEST(StepOf, IsThatOfARoundedColumnWhateverItsZeroAndDigits) {
     EXPECT_NEAR(StepOf(column), step, 1e-9);
     column = (1e6 * column).array().round() / 1e6;
     EXPECT_NEAR(StepOf(column), step, 1e-6);
-    column[7] += 0.4 * step;  // a mean of two
+    column[7] += 0.4 * step;  // like the mean of two readings
     EXPECT_NEAR(StepOf(column), step, 1e-6);
   }
 }
 
 TEST(StepOf, IsNoneOfOtherColumns) {
   EXPECT_LT(StepOf(Positions()), 1e-4);
-  EXPECT_EQ(StepOf(Eigen::VectorXd::LinSpaced(9, 0.0, 1.0)), 0.0);  // too few to tell
+  EXPECT_EQ(StepOf(Eigen::VectorXd::LinSpaced(9, 0.0, 1.0)), 0.0);  // too few positions
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kEncoderStep = 2.0 * M_PI / 144000.0;
 
-/// Readings of a joint that moves by a few steps, `homed` by start in fractions of a step.
+/// Readings of a joint that moves by a few steps. `homed` is its offset after each start, in steps.
 Eigen::VectorXd HomedReadings(const std::vector<int>& start, const std::vector<double>& homed,
                               Random& random) {
   Eigen::VectorXd readings(static_cast<Eigen::Index>(start.size()));
@@ -36,14 +36,14 @@ TEST(EncoderStarts, AreToldByTheRemaindersOfAStep) {
   const std::vector<int> start = Runs({4, 9, 3, 14});
   Eigen::MatrixXd readings(30, 3);
   readings.col(0) = HomedReadings(start, {0.13, 0.61, 0.27, 0.92}, random);
-  // A joint that was not homed, and one that moves far and is read without steps.
+  // Two more joints: one was not homed, one moves far and is read without steps.
   readings.col(1) = HomedReadings(start, {0.4, 0.4, 0.4, 0.4}, random);
   for (Eigen::Index row = 0; row < 30; ++row) readings(row, 2) = random.Uniform(-1.0, 1.0);
   const EncoderStarts starts = FindEncoderStarts(readings);
   EXPECT_EQ(starts.start, start);
   EXPECT_EQ(starts.columns, std::vector<int>{0});
   ASSERT_EQ(starts.steps.size(), 1u);
-  EXPECT_NEAR(starts.steps[0], kEncoderStep, 1e-9 * kEncoderStep);  // roundings
+  EXPECT_NEAR(starts.steps[0], kEncoderStep, 1e-9 * kEncoderStep);  // rounding errors
   EXPECT_EQ(starts.count(), 4);
 }
 
@@ -63,8 +63,8 @@ TEST(EncoderStarts, OneThatComesAgainIsTheSame) {
   EXPECT_EQ(FindEncoderStarts(HomedReadings(start, {0.1, 0.72}, random)).start, start);
 }
 
-/// None of 300 tables in which nothing was homed: noise rounded to printed digits, positions as
-/// commanded, steps that are passed over now and then.
+/// Nothing is found in 300 columns of joints that were not homed: noise rounded to printed digits,
+/// commanded positions, and a coarse encoder that sometimes shows a step between.
 TEST(EncoderStarts, NothingIsFoundWhereNothingWasHomed) {
   Random random(6);
   for (int table = 0; table < 100; ++table) {

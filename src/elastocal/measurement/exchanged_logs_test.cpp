@@ -25,7 +25,8 @@ TrialSamples WithClock(const std::string& name, ClockState state, double peak) {
   return samples;
 }
 
-/// Logs are those of these trials; `peak`: of a trial with its own log.
+/// Reads trials whose own logs are those of the trials `own`. `peak` is the correlation with the
+/// own log.
 SampleWithLog Sampler(const std::vector<std::size_t>& own, double peak) {
   return [=](std::size_t markers_of, std::size_t log_of) {
     if (log_of == 3) throw InputError("a log without its joints");
@@ -34,7 +35,7 @@ SampleWithLog Sampler(const std::vector<std::size_t>& own, double peak) {
   };
 }
 
-// The third trial is not part of it, the last one has a log that no other trial can be read with.
+// The third trial takes no part. The log of the last one cannot be read for any other trial.
 TEST(ExchangedLogs, TwoTrialsWithEachOthersLogSaySo) {
   const auto read = [] {
     return std::vector<TrialSamples>{
@@ -54,19 +55,19 @@ TEST(ExchangedLogs, TwoTrialsWithEachOthersLogSaySo) {
   EXPECT_TRUE(samples[2].summary.refused.empty());
   EXPECT_EQ(samples[3].summary.refused, "no clock");
 
-  // One of the two fits no log better than its own: nothing is exchanged.
+  // One of the two trials fits no other log better than its own, so nothing is exchanged.
   samples = read();
   RefuseExchangedLogs(Sampler({1, 1, 2, 3}, 0.99), samples);
   EXPECT_EQ(samples[0].summary.refused, "no clock");
   EXPECT_TRUE(samples[1].summary.refused.empty());
 
-  // Hardly better than with its own.
+  // The other log fits hardly better than the trial's own.
   samples = read();
   RefuseExchangedLogs(Sampler({1, 0, 2, 3}, 0.8), samples);
   EXPECT_EQ(samples[0].summary.refused, "no clock");
 }
 
-// Random postures with the log of a repetition.
+// Trials of random postures can fit the log of a repetition.
 TEST(ExchangedLogs, AShortLogFitsALongTrialByChance) {
   for (const double covered_s : {4.0, 8.0}) {
     std::vector<TrialSamples> samples{WithClock("a", ClockState::kWeak, 0.3),
@@ -80,7 +81,7 @@ TEST(ExchangedLogs, AShortLogFitsALongTrialByChance) {
   }
 }
 
-// Each try reads files and looks for a clock.
+// Each try reads files and estimates a clock.
 TEST(ExchangedLogs, AreNotLookedForWhereMostClocksCannotBeTold) {
   std::vector<TrialSamples> samples;
   for (int k = 0; k < 5; ++k) samples.push_back(WithClock("t", ClockState::kWeak, 0.3));
@@ -93,7 +94,7 @@ TEST(ExchangedLogs, AreNotLookedForWhereMostClocksCannotBeTold) {
   EXPECT_EQ(tries, 0);
   samples.pop_back();
   RefuseExchangedLogs(count, samples);
-  EXPECT_EQ(tries, 6);  // of each pair, the first that fails
+  EXPECT_EQ(tries, 6);  // of each pair, only the first direction, which fails
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace {
 
 using Intervals = std::vector<FrameInterval>;
 
-// Two markers at 100 Hz on cubics in time.
+// Two markers at 100 Hz whose positions are cubic in time.
 MarkerTrajectories CubicMotion(int frames) {
   MarkerTrajectories trajectories{
       .source = "", .names = {"a", "b"}, .rate_hz = 100.0, .positions = {}};
@@ -35,10 +35,10 @@ void Hide(MarkerTrajectories& trajectories, int marker, FrameInterval gap) {
 TEST(FillGaps, ReproducesACubicUpToTheLongestGap) {
   const MarkerTrajectories truth = CubicMotion(200);
   MarkerTrajectories seen = truth;
-  Hide(seen, 0, {50, 70});  // 0.2 s, just allowed
+  Hide(seen, 0, {50, 70});  // 0.2 s, the longest allowed
   Hide(seen, 0, {100, 101});
   Hide(seen, 1, {120, 141});  // one frame longer
-  Hide(seen, 1, {0, 3});      // nothing before it
+  Hide(seen, 1, {0, 3});      // no frames before it
   Hide(seen, 1, {198, 200});
   const auto reports = FillGaps(0.2, seen);
   ASSERT_EQ(reports.size(), 2u);
@@ -47,7 +47,7 @@ TEST(FillGaps, ReproducesACubicUpToTheLongestGap) {
   EXPECT_TRUE(reports[0].open.empty());
   EXPECT_TRUE(reports[1].filled.empty());
   EXPECT_EQ(reports[1].open, (Intervals{{0, 3}, {120, 141}, {198, 200}}));
-  // Rounding of the normal equations.
+  // The tolerance covers rounding in the normal equations.
   EXPECT_LT((seen.positions - truth.positions).leftCols(3).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_FALSE(Seen(seen, 130, 1));
   EXPECT_TRUE(Seen(seen, 119, 1));
@@ -57,7 +57,7 @@ TEST(FillGaps, ZeroFillsNothingAndALonelyFrameIsNoNeighbour) {
   MarkerTrajectories seen = CubicMotion(60);
   Hide(seen, 0, {30, 31});
   EXPECT_EQ(FillGaps(0.0, seen)[0].open, (Intervals{{30, 31}}));
-  Hide(seen, 0, {10, 29});  // leaves 29 alone before the gap at 30
+  Hide(seen, 0, {10, 29});  // leaves frame 29 alone before the gap at 30
   const auto reports = FillGaps(0.2, seen);
   EXPECT_EQ(reports[0].filled, (Intervals{{10, 29}}));
   EXPECT_EQ(reports[0].open, (Intervals{{30, 31}}));
@@ -76,7 +76,8 @@ TEST(FillGaps, AveragesTheNoiseOfTheNeighbours) {
   for (const FrameInterval& gap : gaps) {
     sum += (seen.positions - truth.positions).block(gap.begin, 0, gap.size(), 3).squaredNorm();
   }
-  // The cubic through ten frames on either side has about 0.6 of one frame's noise in the middle.
+  // In the middle, the cubic through ten frames on either side has about 0.6 of the noise of one
+  // frame.
   EXPECT_LT(std::sqrt(sum / (3.0 * FrameCount(gaps))), 0.2e-3);
 }
 
@@ -84,8 +85,8 @@ TEST(SmoothTrajectories, FiltersEachPieceForItself) {
   MarkerTrajectories seen = CubicMotion(500);
   Random random(8);
   for (double& value : seen.positions.reshaped()) value += random.Normal(0.2e-3);
-  Hide(seen, 0, {50, 60});    // filled
-  Hide(seen, 0, {200, 300});  // open
+  Hide(seen, 0, {50, 60});    // is filled
+  Hide(seen, 0, {200, 300});  // stays open
   Hide(seen, 0, {318, 400});  // leaves 18 frames, one too few
   MarkerTrajectories piece = seen;
   const auto reports = SmoothTrajectories({}, seen);
@@ -95,7 +96,7 @@ TEST(SmoothTrajectories, FiltersEachPieceForItself) {
   EXPECT_TRUE(reports[1].dropped.empty());
   for (int frame = 200; frame < 400; ++frame) EXPECT_FALSE(Seen(seen, frame, 0)) << frame;
 
-  // The last piece is what filtering it alone gives, whatever lies before.
+  // The last piece is the same as if it is filtered alone: what lies before it does not matter.
   Eigen::MatrixXd alone = piece.positions.block(400, 0, 100, 3);
   FiltFilt(ButterworthLowPass(5, 5.0, 100.0), alone);
   EXPECT_EQ(seen.positions.block(400, 0, 100, 3), alone);
@@ -116,7 +117,7 @@ TEST(SmoothTrajectories, TakesAwayNoiseButNotMotion) {
   for (int frame = 100; frame < 1900; ++frame) {
     sum += (seen.positions.row(frame).array() - position(frame)).square().sum();
   }
-  // A tenth of the noise's power lies below 5 Hz: 0.2 mm / sqrt(10) = 0.063 mm, known to 5 %.
+  // A tenth of the noise power lies below 5 Hz: 0.2 mm / sqrt(10) = 0.063 mm, known to 5 %.
   EXPECT_NEAR(std::sqrt(sum / 5400.0), 0.063e-3, 0.006e-3);
 }
 

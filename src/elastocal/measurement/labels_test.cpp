@@ -14,9 +14,9 @@
 namespace elastocal {
 namespace {
 
-constexpr double kNoise = 0.2e-3;  // m, of the cameras
+constexpr double kNoise = 0.2e-3;  // m, noise of the cameras
 
-// One cluster with the given places (3 x markers, m) turning and moving, at 100 Hz.
+// A cluster with markers at `places` (3 x markers, m) that turns and moves, at 100 Hz.
 MarkerTrajectories Move(const Eigen::Matrix3Xd& places, int frames) {
   MarkerTrajectories trajectories;
   trajectories.rate_hz = 100.0;
@@ -57,7 +57,7 @@ void HideFrames(MarkerTrajectories& trajectories, int marker, FrameInterval fram
   trajectories.positions.block(frames.begin, 3 * marker, frames.size(), 3).setConstant(kNaN);
 }
 
-// Equal, with NaN equal to NaN.
+// Compares positions exactly, with NaN equal to NaN.
 void ExpectSame(const MarkerTrajectories& found, const MarkerTrajectories& expected) {
   int different = 0;
   for (Eigen::Index i = 0; i < found.positions.size(); ++i) {
@@ -70,7 +70,7 @@ void ExpectSame(const MarkerTrajectories& found, const MarkerTrajectories& expec
 
 const std::vector<LabelCluster> kThree{{"wrist", {0, 1, 2}}};
 
-/// Distances as other trials show them.
+/// The distances that other trials show.
 LabelOptions Usual() {
   return {.usual = {{{"a", "b"}, 0.0600}, {{"a", "c"}, 0.0897}, {{"b", "c"}, 0.0711}}};
 }
@@ -105,7 +105,7 @@ TEST(CorrectLabels, OtherTrialsTellWhichPartOfATrialHasADisplacedMarker) {
     }
     const auto labels = CorrectLabels(kThree, Usual(), trajectories);
     EXPECT_TRUE(labels[0].swaps.empty());
-    if (begin == 0) {  // all of the trial: not what other trials show, but whole
+    if (begin == 0) {  // unlike the other trials, but the same throughout this one
       EXPECT_TRUE(labels[0].outliers.empty());
       EXPECT_NEAR(labels[0].distances[0], 0.068, 1e-4);
       continue;
@@ -125,7 +125,7 @@ TEST(CorrectLabels, LeavesACleanClusterAlone) {
   EXPECT_TRUE(labels[0].swaps.empty() && labels[0].outliers.empty());
   ExpectSame(trajectories, truth);
   EXPECT_NEAR(labels[0].distances[0], 0.060, 2e-5);  // noise of 0.28 mm / sqrt(3000) is 0.005 mm
-  // Six times sqrt(2) times 0.2 mm; the median of 3000 is known to 3 %.
+  // The tolerance is six times sqrt(2) times 0.2 mm. The median of 3000 frames is known to 3 %.
   EXPECT_NEAR(labels[0].tolerances[0], 1.70e-3, 0.15e-3);
 }
 
@@ -133,7 +133,7 @@ TEST(CorrectLabels, UndoesExchangesForTwentySeconds) {
   MarkerTrajectories trajectories = Move(Triangle(), 6000);
   const MarkerTrajectories truth = trajectories;
   Exchange(trajectories, 0, 2, {1000, 3000});
-  // A rotation of all three labels.
+  // The labels of all three markers are exchanged in a cycle.
   Exchange(trajectories, 0, 1, {4000, 4100});
   Exchange(trajectories, 1, 2, {4000, 4100});
   const auto labels = CorrectLabels(kThree, {}, trajectories);
@@ -150,8 +150,8 @@ TEST(CorrectLabels, CarriesAnExchangeThroughHiddenMarkers) {
   HideFrames(trajectories, 1,
              {1200, 1300});  // the remaining distance is the same under the exchange
   HideFrames(trajectories, 0, {1500, 1550});
-  HideFrames(trajectories, 2, {1520, 1530});  // one alone
-  HideFrames(trajectories, 0, {2200, 2210});  // outside
+  HideFrames(trajectories, 2, {1520, 1530});  // leaves one marker
+  HideFrames(trajectories, 0, {2200, 2210});  // outside the exchange
   const MarkerTrajectories truth = trajectories;
   Exchange(trajectories, 0, 2, {1000, 2000});
   const auto labels = CorrectLabels(kThree, {}, trajectories);
@@ -165,7 +165,7 @@ TEST(CorrectLabels, RemovesOutliersAlsoWithinAnExchange) {
   MarkerTrajectories truth = trajectories;
   for (const int frame : {100, 101, 1500, 2900}) {
     const int marker = frame == 2900 ? 2 : 1;
-    // Off along both lines to the others, so that one marker alone is to blame.
+    // The marker moves away from both others, so that it alone is to blame.
     const Eigen::RowVector3d away = 2.0 * trajectories.positions.block<1, 3>(frame, 3 * marker) -
                                     trajectories.positions.block<1, 3>(frame, 0) -
                                     trajectories.positions.block<1, 3>(frame, marker == 1 ? 6 : 3);
@@ -193,10 +193,10 @@ TEST(CorrectLabels, RemovesAClusterThatNothingExplains) {
 
 TEST(CorrectLabels, RemovesWhatItCannotPutRight) {
   Eigen::Matrix3Xd places = Triangle();
-  places.col(2) << 0.030, 0.0645, 0.0295;  // isosceles: 0 and 1 look alike
+  places.col(2) << 0.030, 0.0645, 0.0295;  // isosceles: exchanging 0 and 1 changes no distance
   MarkerTrajectories trajectories = Move(places, 2000);
   Exchange(trajectories, 0, 2, {500, 600});
-  Exchange(trajectories, 0, 1, {800, 900});  // shows by its jumps alone
+  Exchange(trajectories, 0, 1, {800, 900});  // only jumps show this exchange
   HideFrames(trajectories, 2, {850, 860});
   MarkerTrajectories expected = trajectories;
   expected.positions.middleRows(500, 100).setConstant(kNaN);
@@ -207,7 +207,7 @@ TEST(CorrectLabels, RemovesWhatItCannotPutRight) {
   EXPECT_EQ(labels[0].undecided, (std::vector<FrameInterval>{{500, 600}, {800, 900}}));
   ExpectSame(trajectories, expected);
 
-  // Its outliers are removed all the same.
+  // Outliers of the cluster are still removed.
   trajectories.positions(1500, 8) += 0.05;
   EXPECT_FALSE(CorrectLabels(kThree, {}, trajectories)[0].outliers.empty());
   EXPECT_TRUE(std::isnan(trajectories.positions(1500, 8)));
@@ -215,7 +215,7 @@ TEST(CorrectLabels, RemovesWhatItCannotPutRight) {
 
 TEST(CorrectLabels, LeavesAJumpWithoutAWayBack) {
   MarkerTrajectories trajectories = Move(Triangle().leftCols(2), 2000);
-  Exchange(trajectories, 0, 1, {800, 1100});  // 3 s: which of the parts is exchanged nobody can say
+  Exchange(trajectories, 0, 1, {800, 1100});  // 3 s: either part may be the exchanged one
   const MarkerTrajectories given = trajectories;
   const auto labels = CorrectLabels({{"two", {0, 1}}}, {}, trajectories);
   EXPECT_TRUE(labels[0].undecided.empty());
@@ -247,7 +247,8 @@ TEST(CorrectLabels, FindsTheShapeThoughAMarkerWasLostOrKnocked) {
   CorrectLabels(kThree, {}, trajectories);
   ExpectSame(trajectories, truth);
 
-  // Knocked off by a centimetre for nearly half of the time that it is seen with marker 0.
+  // The marker is knocked off by a centimetre for nearly half of the time in which marker 0 is seen
+  // too.
   for (int frame = 3010; frame < 4000; ++frame) {
     const Eigen::RowVector3d away = 2.0 * trajectories.positions.block<1, 3>(frame, 3) -
                                     trajectories.positions.block<1, 3>(frame, 0) -
@@ -260,8 +261,8 @@ TEST(CorrectLabels, FindsTheShapeThoughAMarkerWasLostOrKnocked) {
   EXPECT_EQ(labels[0].outliers[0].marker, 1);
 }
 
-// Two limbs' markers with each other's labels fit neither cluster but where they come near by
-// chance. One that is off alone was displaced, and is right up to there.
+// If two limbs' markers have each other's labels, neither fits its cluster, except by chance. A
+// single marker that does not fit was displaced and is right up to then.
 TEST(CorrectLabels, TwoMarkersThatAreOffMostOfTheTimeAreOffAllTheTime) {
   const auto left = [](int fitting_a, int fitting_d) {
     MarkerTrajectories trajectories = MoveNamed(1000);

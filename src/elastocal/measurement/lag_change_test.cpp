@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kScoreBlock_s = 2.0;
 
-// Where a marker is at the end of two turning levers, and what another length of the first adds.
+// Position of a marker at the end of two turning levers, of which the first has this length.
 Eigen::Vector3d LeverPosition(double time_s, double phase, double length_m) {
   const double a = 0.9 * std::sin(0.7 * time_s + phase);
   const double b = 0.7 * std::sin(1.1 * time_s - phase);
@@ -24,9 +24,9 @@ Eigen::Vector3d LeverPosition(double time_s, double phase, double length_m) {
 struct PlayedLevers {
   int markers = 3;
   double duration_s = 60.0;
-  double level_s = 0.004;  // change of the lag at time 0, to be found
+  double level_s = 0.004;  // lag change at time 0, to be found
   double slope = 0.0;
-  double too_long_m = 0.0;  // by which the first lever is longer than predicted
+  double too_long_m = 0.0;  // error of the predicted length of the first lever
   bool with_shapes = false;
   double noise_m = 0.2e-3;
   std::uint64_t seed = 1;
@@ -71,7 +71,7 @@ TEST(FindLagChange, FindsLevelAndSlopeWithoutNoise) {
   const auto change = FindLagChange(PlayLevers({.level_s = 1e-4, .slope = 2e-6, .noise_m = 0.0}),
                                     true, kScoreBlock_s);
   ASSERT_TRUE(change);
-  // What is left is of second order in the change: 0.5 m/s^2 times its square.
+  // The error is of second order in the lag change: 0.5 m/s^2 times its square.
   EXPECT_NEAR(change->At(0.0), 1e-4, 1e-7);
   EXPECT_NEAR(change->At(60.0), 2.2e-4, 1e-7);
   EXPECT_NEAR(change->slope, 2e-6, 2e-9);
@@ -85,7 +85,7 @@ TEST(FindLagChange, TakesNoSlopeThatIsNotAskedFor) {
   EXPECT_NEAR(change->level_s, 0.004, 5e-5);
 }
 
-// Over sixty recordings, the error is as large as its standard deviation says.
+// Over sixty recordings, the errors must be as large as their standard deviations say.
 TEST(FindLagChange, KnowsHowFarNoiseThrowsItOff) {
   double squares = 0.0;
   for (int seed = 1; seed <= 60; ++seed) {
@@ -95,12 +95,12 @@ TEST(FindLagChange, KnowsHowFarNoiseThrowsItOff) {
     ASSERT_TRUE(change);
     squares += std::pow((change->At(30.0) - 1e-4) / change->Sd(30.0), 2) / 60.0;
   }
-  // The mean of sixty squares of about 28 degrees of freedom: 1.07 +- 0.2.
+  // Mean of sixty squares with about 28 degrees of freedom: 1.07 +- 0.2.
   EXPECT_GT(squares, 0.55);
   EXPECT_LT(squares, 1.75);
 }
 
-// A lever that is longer than predicted moves markers in step with them, by 20 mm here.
+// A lever that is longer than predicted moves the markers in step with it, here by 20 mm.
 TEST(FindLagChange, TakesShapesForWhatTheyAre) {
   const PlayedLevers longer{.level_s = 0.001, .too_long_m = 0.02, .noise_m = 0.02e-3};
   const auto without = FindLagChange(PlayLevers(longer), false, kScoreBlock_s);
@@ -114,7 +114,7 @@ TEST(FindLagChange, TakesShapesForWhatTheyAre) {
 
 TEST(FindLagChange, LeavesOutMarkersThatGoTheirOwnWay) {
   MarkerMotion motion = PlayLevers({});
-  motion.measured.middleCols<3>(3).colwise().reverseInPlace();  // the second marker, backwards
+  motion.measured.middleCols<3>(3).colwise().reverseInPlace();  // the second one, in reverse
   const auto change = FindLagChange(motion, false, kScoreBlock_s);
   ASSERT_TRUE(change);
   EXPECT_NEAR(change->level_s, 0.004, 1e-4);

@@ -11,15 +11,15 @@
 namespace elastocal {
 namespace {
 
-/// The clock by a log as it is, of which nothing is known but how well speeds agree.
+/// A clock fit of which only the correlation of the speeds is known.
 ClockFit Correlated(double peak) {
   ClockFit clock;
   clock.peak = peak;
   return clock;
 }
 
-// The speeds of a leg one of whose joints has the wrong sign are others; where they do not fit any
-// more, the log that would fit tells why.
+// A joint with the wrong sign changes the predicted speeds of a leg. If they no longer fit, the
+// trial is refused, and the reason names the log that would fit.
 TEST(LogMistakesStudy, NamesTheSignAndTheExchangeThatSpoilTheClock) {
   const ScriptedTrial clean = PlayStanding();
   const auto joints = clean.log.positions.cols();
@@ -35,7 +35,7 @@ TEST(LogMistakesStudy, NamesTheSignAndTheExchangeThatSpoilTheClock) {
                      std::string::npos
                  ? 1
                  : 0;
-    // On request it is undone for the clock, and not in the positions.
+    // If the user asks for it, the sign is corrected for the clock but not in the positions.
     MeasurementOptions on_request;
     on_request.accepted = {"sign:" + clean.log.names[c]};
     const TrialSamples told = Sample(played, on_request);
@@ -58,7 +58,7 @@ TEST(LogMistakesStudy, NamesTheSignAndTheExchangeThatSpoilTheClock) {
   EXPECT_EQ(named, refused);
 }
 
-// A log that comes back with a jump looks like fast motion, which the cameras do not see.
+// A log that ends its freeze with a jump seems to show a fast motion, which the cameras do not see.
 TEST(LogMistakesStudy, NamesTheJointWhoseFrozenLogSpoilsTheClock) {
   int refused = 0, named = 0;
   for (const std::uint64_t seed : {1, 2}) {
@@ -81,8 +81,7 @@ TEST(LogMistakesStudy, NamesTheJointWhoseFrozenLogSpoilsTheClock) {
   EXPECT_GE(named, 0.9 * refused);
 }
 
-// Of two parallel axes, markers are as fast with the one turned the other way as with the other
-// one.
+// Reversing either of two parallel axes gives markers the same speeds.
 TEST(LogMistakesStudy, PositionsTellWhichOfTwoParallelAxesTurnsTheOtherWay) {
   MarkedRobot robot = WaistAndLeg();
   for (const int still : {0, 1, 4, 5}) robot.tree.joints[still].limits = {};
@@ -93,7 +92,7 @@ TEST(LogMistakesStudy, PositionsTellWhichOfTwoParallelAxesTurnsTheOtherWay) {
     const ScriptedTrial clean = Play(robot, {.postures = 12, .move_s = 1.5, .seed = seed});
     MarkerTrajectories markers = clean.markers;
     SmoothTrajectories({}, markers);
-    for (const int pitch : {2, 3}) {  // of hip and knee
+    for (const int pitch : {2, 3}) {  // joints of hip and knee
       ScriptedTrial played = clean;
       played.log.positions.col(pitch) *= -1.0;
       const auto found = FindLogMistake(robot, AllMarkers(robot), {0}, SmoothLog(played.log, {}),
@@ -105,8 +104,8 @@ TEST(LogMistakesStudy, PositionsTellWhichOfTwoParallelAxesTurnsTheOtherWay) {
   }
 }
 
-// There and back, the speeds of the way back are those of the way there, and with other columns
-// they may be even more alike: positions tell the lag, and that the columns are right.
+// On the way back the speeds are those of the way there, and exchanged columns may fit them even
+// better. Positions tell the lag, and show that the columns are right.
 TEST(LogMistakes, AMotionThereAndBackIsNoMistake) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     const ScriptedTrial played = PlayStanding({.postures = 3,
@@ -135,11 +134,11 @@ TEST(LogMistakesStudy, JointsThatMoveOneAfterTheOtherAreNotFrozen) {
   };
   const auto found = find(clean, 0.999);
   EXPECT_FALSE(found) << Describe(*found, clean.log.names);
-  // Where one joint moves at a time, speeds agree with the other sign as well; positions do not.
+  // If one joint moves at a time, reversing its sign keeps the speeds but not the positions.
   const auto by_speeds = find(clean, 0.5);
   EXPECT_FALSE(by_speeds) << Describe(*by_speeds, clean.log.names);
 
-  ScriptedTrial frozen = clean;  // of a joint that moves in the middle
+  ScriptedTrial frozen = clean;  // a joint is frozen in the middle of its motion
   const Eigen::Index rows = clean.log.positions.rows();
   auto part = frozen.log.positions.col(3).segment(rows / 6, rows / 2);
   part.setConstant(part[0]);
@@ -149,7 +148,7 @@ TEST(LogMistakesStudy, JointsThatMoveOneAfterTheOtherAreNotFrozen) {
   EXPECT_GT(mistake->frozen_to_s, mistake->frozen_from_s);
 }
 
-// A header with one name too few or too many before the limb.
+// The header lacks a name before the limb, or has one too many.
 TEST(LogMistakes, ColumnsOfALimbThatAreAllMovedByOneAreNamed) {
   const MarkedRobot robot = WaistAndLeg();
   const ScriptedTrial clean = PlayStanding({.postures = 12, .move_s = 1.5});

@@ -49,7 +49,7 @@ TEST_F(MarkerUnits, AMarkerThatIsTooFarIsNamed) {
 }
 
 TEST_F(MarkerUnits, AllInAnotherUnitAreNamed) {
-  positions_ *= 1e-3;  // metres, read as millimetres
+  positions_ *= 1e-3;  // values in metres, read as millimetres
   const auto found = FindOtherUnit(positions_, names_, robot_);
   ASSERT_TRUE(found);
   EXPECT_TRUE(found->marker.empty());
@@ -57,7 +57,7 @@ TEST_F(MarkerUnits, AllInAnotherUnitAreNamed) {
   EXPECT_EQ(Describe(*found).find("all positions are 1000 times too small: two markers of one link "
                                   "are 0.06 mm apart, where the project has 60 mm"),
             0U);
-  // A project whose clusters are drawn half as large is none of it.
+  // A project that draws its clusters half as large has no other unit.
   for (Marker& marker : robot_) marker.p_link_marker *= 0.5;
   EXPECT_FALSE(FindOtherUnit(1e3 * positions_, names_, robot_));
 }
@@ -68,9 +68,9 @@ TEST_F(MarkerUnits, SoundMarkersExchangedOnesAndThoseOfAnotherPlaceAreNot) {
   exchanged.middleCols<3>(3).swap(exchanged.middleCols<3>(9));
   EXPECT_FALSE(FindOtherUnit(exchanged, names_, robot_));
   Eigen::MatrixXd zero = positions_;
-  zero.middleCols<3>(3).setZero();  // never seen, as some trackers write it
+  zero.middleCols<3>(3).setZero();  // some trackers write zeros for unseen markers
   EXPECT_FALSE(FindOtherUnit(zero, names_, robot_));
-  positions_.middleCols<3>(9) *= 1e-3;  // one mate tells too little
+  positions_.middleCols<3>(9) *= 1e-3;  // one other marker on the link is not enough
   EXPECT_FALSE(FindOtherUnit(positions_, names_, robot_));
 }
 

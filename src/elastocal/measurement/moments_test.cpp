@@ -15,14 +15,14 @@ Recording AtTimes(const Eigen::VectorXd& time_s) {
 
 TEST(MotionOfPostures, HoldsWhatFollowsWithinHalfASecond) {
   Eigen::VectorXd times(8);
-  times << 0.0, 3.0, 3.1, 3.2, 9.0, 9.4, 9.4, 20.0;  // twice the same time is no motion
+  times << 0.0, 3.0, 3.1, 3.2, 9.0, 9.4, 9.4, 20.0;  // equal times are no motion
   EXPECT_EQ(MotionOfPostures(AtTimes(times)), (std::vector<int>{-1, 0, 0, 0, 1, 1, -1, -1}));
   Recording without = AtTimes(times);
   without.time_s.resize(0);
   EXPECT_EQ(MotionOfPostures(without), std::vector<int>(8, -1));
 }
 
-// Rests of a trial may be near in time, but the robot came to rest between them.
+// Two rests of a trial may follow closely, but the robot stopped between the motions.
 TEST(MotionOfPostures, InTrialsIsThatOfMotionsOnly) {
   Recording recording = AtTimes(Eigen::VectorXd::LinSpaced(6, 0.0, 0.5));
   recording.trials = {{.name = "rests", .chains = {}},

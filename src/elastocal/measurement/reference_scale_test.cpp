@@ -11,7 +11,7 @@
 namespace elastocal {
 namespace {
 
-/// Frames of bars that lie along x, one behind the other, all lengths `scale` times too long.
+/// Frames of bars that lie along x, one behind the other. All lengths are multiplied by `scale`.
 MarkerTrajectories SeenBars(const std::vector<ReferenceLength>& references, double scale,
                             double noise_sd, int frames, std::uint64_t seed) {
   MarkerTrajectories seen;
@@ -45,7 +45,7 @@ TEST(ReferenceScale, OfABarWithoutNoiseIsItsRatio) {
 TEST(ReferenceScale, GoodCamerasAreNotAccusedAndThoseOffByATenthOfAPercentAre) {
   int missed = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    // A bar of 500 mm whose length is off by its standard deviation, 0.2 mm noise.
+    // A bar of 500 mm with a length error of one standard deviation, seen with noise of 0.2 mm.
     const double good = 1.0 + Random(seed).Normal(2e-5) / 0.5;
     EXPECT_FALSE(IsWrong(*MeasureScale(kBar, SeenBars(kBar, good, 2e-4, 600, seed))));
     missed += IsWrong(*MeasureScale(kBar, SeenBars(kBar, 1.001 * good, 2e-4, 600, seed))) ? 0 : 1;
@@ -71,7 +71,7 @@ TEST(ReferenceScale, LengthsThatContradictEachOtherAreLessCertain) {
   MarkerTrajectories seen = SeenBars(two, 1.0, 0.0, 50, 1);
   const double agreed = MeasureScale(two, seen)->sd;
   EXPECT_NEAR(agreed, 2e-5 / 0.5 / std::sqrt(2.0), 1e-12);
-  seen.positions.col(9).array() += 1e-3;  // D: 1 mm, 50 standard deviations
+  seen.positions.col(9).array() += 1e-3;  // moves D by 1 mm, which is 50 standard deviations
   const auto scale = MeasureScale(two, seen);
   EXPECT_NEAR(scale->size, 1e-3, 1e-9);
   EXPECT_GT(scale->sd, 20.0 * agreed);

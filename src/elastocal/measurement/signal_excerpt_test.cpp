@@ -13,7 +13,7 @@ TEST(SignalExcerpt, TakesTheCoordinateThatRangesMost) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   MarkerTrajectories raw{"", {"A", "B"}, 100.0, Eigen::MatrixXd::Zero(3, 6)};
   raw.positions.col(1) << 0.0, 0.1, 0.2;
-  raw.positions.col(5) << 1.0, nan, 0.5;  // z of B: ranges over 0.5, though not seen once
+  raw.positions.col(5) << 1.0, nan, 0.5;  // z of B ranges over 0.5, although one frame is missing
   SignalExcerpt excerpt = TakeExcerpt(raw);
   EXPECT_EQ(excerpt.marker, "B");
   EXPECT_EQ(excerpt.axis, 2);

@@ -15,7 +15,7 @@ namespace {
 
 double Wave(double time_s) { return std::sin(std::numbers::pi * time_s); }  // 0.5 Hz
 
-// Two joints, of which the first has torques, and a force-torque sensor, from time 7 s.
+// A log from 7 s of two joints, of which the first has torques, and of a force-torque sensor.
 JointLog MakeLog(Eigen::VectorXd time_s) {
   JointLog log;
   log.source = "j.csv";
@@ -45,7 +45,8 @@ TEST(SmoothLog, KeepsSlowMotionsOfAllSignals) {
   for (const double time : Eigen::VectorXd::LinSpaced(365, 9.5, 14.5)) {
     const Eigen::VectorXd signals = *log.At(time);
     ASSERT_EQ(signals.size(), 10);
-    // Fifth order, twice: at a tenth of the cutoff 1e-10 is lost; a cubic over 5 ms loses less.
+    // The filter of fifth order, applied twice, loses 1e-10 at a tenth of the cutoff. Cubic
+    // interpolation over 5 ms loses less.
     EXPECT_NEAR(signals[0], Wave(time), 1e-7);
     EXPECT_NEAR(signals[1], 2.0, 1e-12);
     EXPECT_NEAR(signals[2], -30.0 * Wave(time), 3e-6);
@@ -57,7 +58,7 @@ TEST(SmoothLog, KeepsSlowMotionsOfAllSignals) {
 TEST(SmoothLog, CoversWhatItKnowsFromBothSides) {
   const SmoothedLog log = SmoothLog(MakeLog(Times(1001, 100.0)), {});
   EXPECT_FALSE(log.At(6.0));
-  EXPECT_FALSE(log.At(7.05));  // half a period of the cutoff
+  EXPECT_FALSE(log.At(7.05));  // within half a period of the cutoff from the beginning
   EXPECT_TRUE(log.At(7.15));
   EXPECT_TRUE(log.At(16.85));
   EXPECT_FALSE(log.At(16.95));
@@ -71,7 +72,7 @@ TEST(SmoothLog, TakesTimesThatJitter) {
   for (double& time : time_s) time += random.Uniform(-2e-3, 2e-3);
   const SmoothedLog log = SmoothLog(MakeLog(time_s), {});
   for (const double time : Eigen::VectorXd::LinSpaced(585, 8.0, 16.0)) {
-    // Linear interpolation over 9 ms at most: (0.009 pi)^2 / 8.
+    // Linear interpolation over at most 9 ms has an error of (0.009 pi)^2 / 8.
     EXPECT_NEAR((*log.At(time))[0], Wave(time), 1e-4);
   }
 }

@@ -23,7 +23,7 @@ std::vector<int> AllOf(int count) {
   return markers;
 }
 
-// Every frame is a sample or unused for exactly one reason.
+// Checks that every frame is either a sample or unused for exactly one reason.
 void ExpectComplete(const StableSamples& samples, int frame_count) {
   std::vector<int> times(static_cast<std::size_t>(frame_count), 0);
   for (const int frame : samples.frames) ++times[static_cast<std::size_t>(frame)];
@@ -52,14 +52,15 @@ TEST(MarkerSpeeds, AreCentralDifferences) {
 TEST(FindStableSamples, FindsRunsAndSaysWhyOthersAreNot) {
   Eigen::MatrixXd speeds = Eigen::MatrixXd::Constant(100, 3, 0.001);
   speeds.block(20, 1, 10, 1).setConstant(0.1);   // moving
-  speeds(25, 2) = 0.2;                           // the fastest of it
+  speeds(25, 2) = 0.2;                           // the fastest frame of this motion
   speeds.block(35, 0, 5, 1).setConstant(0.05);   // leaves 30 to 34 at rest: too short
-  speeds.block(60, 0, 10, 2).setConstant(kNaN);  // one of three left
-  speeds.block(80, 2, 20, 1).setConstant(kNaN);  // two of three
+  speeds.block(60, 0, 10, 2).setConstant(kNaN);  // leaves one marker of three
+  speeds.block(80, 2, 20, 1).setConstant(kNaN);  // leaves two markers of three
   const StableSamples samples = FindStableSamples(
       speeds, AllOf(3), 100.0, {.threshold_m_per_s = 0.01, .hold_s = 0.1, .samples_per_run = 2});
   EXPECT_EQ(samples.runs, (Intervals{{0, 20}, {40, 60}, {70, 100}}));
-  // Quarters of each run; of the last only the ten frames in which all three are seen.
+  // Samples are at the quarters of each run. In the last run, only the ten frames that show all
+  // three markers count.
   EXPECT_EQ(samples.frames, (std::vector<int>{5, 15, 45, 55, 72, 77}));
   EXPECT_EQ(samples.run_of_frame, (std::vector<int>{0, 0, 1, 1, 2, 2}));
   EXPECT_EQ(samples.samples_of_marker, (std::vector<int>{6, 6, 6}));
@@ -91,7 +92,8 @@ TEST(FindStableSamples, TakesAllFramesOfARunThatHasFewer) {
   EXPECT_EQ(samples.frames, (std::vector<int>{0, 1, 2, 3}));
 }
 
-// Twelve markers, 0.2 mm of noise: postures 5 s apart, of which the last second is at rest.
+// Positions of twelve markers with noise of 0.2 mm: a posture every 5 s, which ends with `rest_s`
+// of rest.
 MarkerTrajectories Postures(int count, double rest_s, double noise = 0.2e-3) {
   MarkerTrajectories trajectories;
   trajectories.names.resize(12, "m");
@@ -100,7 +102,7 @@ MarkerTrajectories Postures(int count, double rest_s, double noise = 0.2e-3) {
   trajectories.positions.resize(frames, 36);
   Random random(3);
   for (int i = 0; i < frames; ++i) {
-    // Minimum-jerk motion, as the paper's splines of 5th order.
+    // The motion has minimum jerk, like the paper's splines of 5th order.
     const double u = std::min(1.0, (i % 500) / (100.0 * (5.0 - rest_s)));
     const int passed = i / 500;  // motions
     const double way = passed + u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
@@ -118,8 +120,9 @@ TEST(FindStableSamples, ChoosesItsThresholdFromTheData) {
     SmoothTrajectories({}, trajectories);
     const StableSamples samples =
         FindStableSamples(MarkerSpeeds(trajectories), markers, 100.0, {.samples_per_run = 4});
-    // White noise of sd s through a low-pass at f, rate r: the speed of an axis has variance
-    // (2 pi s)^2 2 f^3 / (3 r), so 1.15 mm/s here; the median of three axes' length is 1.538 sd.
+    // White noise of s through a low-pass at f with rate r gives each axis a speed of variance (2
+    // pi s)^2 2 f^3 / (3 r), so 1.15 mm/s here. The median length of three axes is 1.538 times
+    // that.
     ASSERT_TRUE(samples.resting_speed_m_per_s.has_value());
     EXPECT_NEAR(*samples.resting_speed_m_per_s, 1.77e-3, 0.45e-3);
     EXPECT_FALSE(samples.threshold_limited);

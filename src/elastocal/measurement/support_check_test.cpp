@@ -37,13 +37,14 @@ TEST_F(SupportCheck, TheWrongFootIsNamedWithTheRightOne) {
   const auto found = Find({.name = "swing", .chains = {}, .support = {robot_.left}});
   ASSERT_TRUE(found);
   EXPECT_EQ(found->link, robot_.left);
-  EXPECT_NEAR(found->distance, 0.4, 1e-9);  // from the median, in the middle
+  EXPECT_NEAR(found->distance, 0.4, 1e-9);  // from the median, which is in the middle
   EXPECT_EQ(Describe(*found, marked_).find("the support left_sole moves by 400 mm, while "), 0u);
   ASSERT_GE(found->still, 0);
   EXPECT_EQ(robot_.biped.tree.links[found->still].body, robot_.biped.tree.links[robot_.right].body);
 }
 
-// The joints of the right leg move, and the markers that are called those of the left foot.
+// The joints of the right leg move, but the markers that move are labelled as those of the left
+// foot.
 TEST_F(SupportCheck, LabelsOfTheFeetAreNamedWhereTheJointsOfTheOtherLegMove) {
   const RobotTree& tree = robot_.biped.tree;
   travel_.setConstant(0.01);
@@ -74,7 +75,7 @@ TEST_F(SupportCheck, WhatStandsIsNotAccused) {
   EXPECT_FALSE(Find({.name = "free", .chains = {}, .support = {}, .free_root = true}));
 }
 
-// A shank that turns about the ball at its end: its markers move by 0.1 m and more.
+// A shank turns about the ball at its end, so that its markers move by 0.1 m and more.
 TEST_F(SupportCheck, AShankMayTurnAboutItsBall) {
   const Eigen::Vector3d origin = robot_.biped.tree.links[robot_.left].T_body_link.translation();
   const Eigen::Vector3d place(1.0, 2.0, 0.02);
@@ -92,7 +93,7 @@ TEST_F(SupportCheck, AShankMayTurnAboutItsBall) {
       }
     }
   };
-  // Three feet are balls; this robot has two.
+  // A trial with three standing feet assumes balls; this robot has only two.
   const Trial on_balls = {
       .name = "balls", .chains = {}, .support = {robot_.left, robot_.left, robot_.left}};
   turn_about(0.9 * origin, 0.0);

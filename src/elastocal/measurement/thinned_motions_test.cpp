@@ -10,7 +10,7 @@
 namespace elastocal {
 namespace {
 
-/// Ten postures of rest, then moments of a motion.
+/// Ten postures at rest, then `moments` moments of a motion.
 Recording RestAndMotion(int moments) {
   Recording recording;
   recording.trials = {{"rest", TrialKind::kCalibration, {}}, {"swing", TrialKind::kSine, {}}};
@@ -28,7 +28,7 @@ TEST(ThinnedMotions, KeepRestAndEvenlySoManyMoments) {
   EXPECT_EQ(WithThinnedMotions(RestAndMotion(50), 100).posture_count(), 60);
 }
 
-// A leg that moves little among much of the arms tells its noise by all that it has.
+// A leg that moves little keeps all its moments, while the arms' many moments are thinned.
 TEST(ThinnedMotions, KeepEnoughOfEachGroup) {
   const Recording recording = RestAndMotion(3000);
   std::vector<int> group(3010, 0);
@@ -36,10 +36,10 @@ TEST(ThinnedMotions, KeepEnoughOfEachGroup) {
   std::fill_n(group.begin() + 2000, 100, 2);
   std::vector<int> kept(3, 0);
   for (const int i : ThinnedMotions(recording, 300, group, 30)) ++kept[group[i]];
-  EXPECT_EQ(kept, (std::vector<int>{10 + 289, 15, 34}));  // of 2885, each tenth; each third of 100
+  EXPECT_EQ(kept, (std::vector<int>{10 + 289, 15, 34}));  // 10 + 2885 / 10, all 15, 100 / 3
 }
 
-// What a correction changes is in the sample, however little it is.
+// The sample contains all that a correction changes, however little it is.
 TEST(ThinnedMotions, FewPosturesHoldWhatIsCorrected) {
   const Recording recorded = RestAndMotion(1000);
   Recording corrected = recorded;
@@ -48,9 +48,9 @@ TEST(ThinnedMotions, FewPosturesHoldWhatIsCorrected) {
   EXPECT_EQ(few.size(), 10u + 3u + 100u);
   for (const int row : {0, 9, 501, 502, 503}) EXPECT_EQ(std::count(few.begin(), few.end(), row), 1);
   EXPECT_TRUE(std::is_sorted(few.begin(), few.end()));
-  // Half of the moments: as many of either half.
+  // If half of the moments are changed, both halves are sampled alike.
   corrected.q.bottomRows(500).setConstant(1.0);
-  EXPECT_EQ(FewPostures(recorded, corrected, 100).size(), 10u + 84u + 100u);  // of 503 and 497
+  EXPECT_EQ(FewPostures(recorded, corrected, 100).size(), 10u + 84u + 100u);  // out of 503 and 497
 }
 
 TEST(ThinnedMotions, FewPosturesAreNotSoughtWhereTheySaveLittle) {

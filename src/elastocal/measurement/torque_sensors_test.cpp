@@ -12,8 +12,8 @@
 namespace elastocal {
 namespace {
 
-// A minute at 100 Hz: a joint that goes to a posture within 4 s, rests for a second, and goes back;
-// its torque follows, with noise, and is rounded to `resolution` if that is above 0.
+// A minute at 100 Hz of a joint that goes to a posture in 4 s, rests for a second, and goes back.
+// Its torque follows, with noise, and is rounded to `resolution` unless that is 0.
 JointLog MakeLog(double noise, double resolution = 0.0) {
   constexpr int kSamples = 6000;
   Random random(1);
@@ -38,7 +38,7 @@ std::vector<TorqueFinding> Check(const JointLog& log) { return CheckTorqueSensor
 TEST(CheckTorqueSensors, BelievesWorkingSensors) {
   EXPECT_TRUE(Check(MakeLog(0.2)).empty());
   EXPECT_TRUE(Check(MakeLog(0.2, 0.1)).empty());
-  // Without noise the same value comes back at each rest, its extremes too.
+  // Without noise, the torque has the same value in each rest, including its extremes.
   EXPECT_TRUE(Check(MakeLog(0.0)).empty());
   EXPECT_TRUE(Check(MakeLog(0.0, 0.1)).empty());
 }
@@ -81,7 +81,7 @@ TEST(CheckTorqueSensors, PassesOverJointsWithoutSensorsAndRobotsAtRest) {
   log.torques.setConstant(kNaN);
   EXPECT_TRUE(Check(log).empty());
   log = MakeLog(0.2);
-  log.torques.col(0).segment(420, 60).setConstant(30.0);  // no motion within this
+  log.torques.col(0).segment(420, 60).setConstant(30.0);  // the joint rests within these samples
   EXPECT_TRUE(Check(log).empty());
   EXPECT_TRUE(Check({}).empty());
 }

@@ -33,20 +33,21 @@ TEST(PredictSpeeds, AreThoseThatCamerasSee) {
     MarkerTrajectories markers = played.markers;
     SmoothTrajectories({}, markers);
     const Eigen::MatrixXd measured = MarkerSpeeds(markers);
-    // At the cameras' rate: every second sample of the log.
+    // The speeds have the cameras' rate, which is every second sample of the log.
     const LoggedSpeeds logged = Predict(robot, played.log, standing);
     EXPECT_NEAR(logged.time_s[1] - logged.time_s[0], 0.01, 1e-12);
     for (Eigen::Index i = 20; i + 20 < logged.time_s.size(); ++i) {
       const auto frame = std::lround(100.0 * logged.time_s[i]);
-      // A filtered rotation is not quite the rotation by filtered angles; speeds reach 0.5 m/s.
+      // A filtered rotation differs slightly from a rotation by filtered angles. Speeds reach 0.5
+      // m/s.
       EXPECT_LT((logged.speeds.row(i) - measured.row(frame)).cwiseAbs().maxCoeff(), 2e-3) << i;
     }
     EXPECT_EQ(logged.speeds.col(9).maxCoeff() > 0.01, standing == 6);
   }
 }
 
-// A root link that leans and shifts on three legs, each a crane of three axes; the feet turn with
-// it about their centres, which stay where they are.
+// A root link leans and shifts on three legs, each a crane of three axes. The feet turn with it
+// about their centres, which do not move.
 TEST(PredictSpeeds, TurnAboutTheCentresOfThreeFeet) {
   MarkedRobot robot;
   robot.tree = MakeRoot();
@@ -81,7 +82,7 @@ TEST(PredictSpeeds, TurnAboutTheCentresOfThreeFeet) {
   std::iota(coordinates.begin(), coordinates.end(), 0);
   const LoggedSpeeds logged =
       PredictSpeeds(robot, {0}, feet, SmoothLog(log, {}), coordinates, 100.0);
-  for (Eigen::Index i = 100; i + 100 < logged.time_s.size(); ++i) {  // the filter's ends aside
+  for (Eigen::Index i = 100; i + 100 < logged.time_s.size(); ++i) {  // without the filter's ends
     const auto marker = [&](double time) { return root_at(time) * robot.markers[0].p_link_marker; };
     const double time = logged.time_s[i];
     EXPECT_NEAR(logged.speeds(i, 0), (marker(time + 1e-4) - marker(time - 1e-4)).norm() / 2e-4,
@@ -94,7 +95,7 @@ TEST(EstimateTrialClock, IsNotMisledByMarkersThatComeAndGo) {
   const MarkedRobot robot = MarkedTalosLeg();
   ScriptedTrial played = Play(robot, {.postures = 40, .lag_s = 3.0, .drift_ppm = 20.0});
   Random random(3);
-  // The markers of the foot, the fastest, are gone half of the time, in the midst of motions.
+  // The markers of the foot, which are the fastest, are missing half of the time, during motions.
   for (int begin = 0; begin + 150 < played.markers.frame_count(); begin += 300) {
     const int late = random.Index(100);
     for (const int marker : {6, 7, 8}) Hide(played.markers, marker, begin + late, 150);
@@ -111,7 +112,7 @@ TEST(EstimateTrialClock, IsNotMisledByMarkersThatComeAndGo) {
 TEST(EstimateTrialClock, IsNotMisledByLabelsThatWereExchangedForAWhile) {
   const MarkedRobot robot = MarkedTalosLeg();
   ScriptedTrial played = Play(robot, {.postures = 5, .lag_s = 3.0});
-  // Two markers far apart, so that each jumps; the rest of the trial is short and slow.
+  // The two markers are far apart, so that each jumps. The rest of the trial is short and slow.
   Eigen::MatrixXd& positions = played.markers.positions;
   const Eigen::MatrixXd first = positions.block(900, 3 * 0, 140, 3);
   positions.block(900, 3 * 0, 140, 3) = positions.block(900, 3 * 8, 140, 3);
@@ -129,7 +130,7 @@ TEST(EstimateTrialClock, SearchesAllWaysInWhichCamerasAndLogCanHaveRunTogether) 
   SmoothTrajectories({}, played.markers);
   const Eigen::MatrixXd speeds = MarkerSpeeds(played.markers);
   const LoggedSpeeds logged = Predict(robot, played.log, 0);
-  // The cameras ran for a minute in the middle of the log's three.
+  // The cameras record a minute in the middle of the log's three.
   const Eigen::MatrixXd middle = speeds.middleRows(7000, 6000);
   const ClockFit clock = EstimateTrialClock(middle, 100.0, logged, std::nullopt, {});
   EXPECT_EQ(clock.state, ClockState::kReliable) << Describe(clock);

@@ -16,19 +16,19 @@
 namespace elastocal {
 namespace {
 
-// The mean of eight frames after the filter: 0.2 mm at 100 Hz, of which a tenth of the bandwidth
-// passes, leave 0.063 mm a frame. 0.3 mm is five times that; means do better.
+// A sample is the mean of eight filtered frames. The filter passes a tenth of the bandwidth and so
+// reduces noise from 0.2 mm at 100 Hz to 0.063 mm a frame. The tolerance is five times that.
 constexpr double kMarkerTolerance = 0.3e-3;
-constexpr double kTorqueTolerance = 0.2;  // N.m, of noise of 0.1 before filter and mean
+constexpr double kTorqueTolerance = 0.2;  // N.m, for noise of 0.1 before filter and mean
 
-// The posture that is held at a time, or nearly so.
+// The posture that is held at this time, or the nearest one.
 Eigen::Index PostureAt(const ScriptedTrial& played, double time_s) {
   Eigen::Index posture = 0;
   (played.rest_begin_s.array() + 0.75 - time_s).abs().minCoeff(&posture);
   return posture;
 }
 
-// Each sample is of a posture of its own that was played, and within the noise.
+// Checks that each sample has its own played posture, up to noise.
 void ExpectTrue(const TrialSamples& samples, const ScriptedTrial& played, int standing = kFoot) {
   const MarkedRobot robot = WaistAndLeg();
   Eigen::Index last = -1;
@@ -36,7 +36,7 @@ void ExpectTrue(const TrialSamples& samples, const ScriptedTrial& played, int st
     const Eigen::Index posture = PostureAt(played, samples.time_s[i]);
     EXPECT_GT(posture, last);
     last = posture;
-    // At the threshold of rest, 5 mm/s, joints still move a little.
+    // At the threshold of rest, 5 mm/s, the joints still move a little.
     EXPECT_LT((samples.q.row(i) - played.q.row(posture)).cwiseAbs().maxCoeff(), 2e-3) << i;
     const Eigen::VectorXd positions = PlayedPositions(robot, standing, samples.q.row(i));
     const Eigen::VectorXd torques = PlayedTorques(robot.tree, samples.q.row(i));
@@ -79,11 +79,11 @@ TEST(SampleTrial, HoldsTheRootWhereThereIsNoSupport) {
   ExpectTrue(samples, played, 0);
 }
 
-/// The trial with the whole robot on a cart that goes to and fro and turns between the rests, but
+/// The trial with the whole robot on a cart that drives to and fro and turns between the rests, but
 /// stands still during each of them.
 ScriptedTrial OnACart(ScriptedTrial played) {
   Random random(7);
-  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = from;  // place, m, and direction, rad
+  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = from;  // place [m] and direction [rad]
   Eigen::Index posture = 0;
   for (Eigen::Index i = 0; i < played.markers.positions.rows(); ++i) {
     const double time = static_cast<double>(i) / played.markers.rate_hz;
@@ -105,7 +105,7 @@ ScriptedTrial OnACart(ScriptedTrial played) {
   return played;
 }
 
-// What the joints do is then seen from the waist; by what moves in the laboratory, no clock fits.
+// The speeds are then those relative to the waist. Those relative to the laboratory fit no clock.
 TEST(SampleTrial, TellsTheClockOfARobotThatDrivesBetweenItsRests) {
   const ScriptedTrial played = OnACart(Play(WaistAndLeg(), {.lag_s = 2.3, .drift_ppm = 20.0}));
   Trial trial{.name = "cart", .chains = {"leg"}, .free_root = true};
@@ -113,7 +113,7 @@ TEST(SampleTrial, TellsTheClockOfARobotThatDrivesBetweenItsRests) {
   ASSERT_EQ(samples.summary.refused, "");
   EXPECT_EQ(samples.summary.postures, 24);
   for (const double time : {0.0, 110.0}) {
-    // Samples are 60 ms and more away from the ends of a rest.
+    // Samples are at least 60 ms away from the ends of a rest.
     EXPECT_NEAR(samples.summary.clock.RobotTime(time), (1.0 + 20e-6) * time - 2.3, 5e-3);
   }
   for (Eigen::Index i = 0; i < samples.q.rows(); ++i) {
@@ -122,7 +122,7 @@ TEST(SampleTrial, TellsTheClockOfARobotThatDrivesBetweenItsRests) {
   }
   trial.free_root = false;
   EXPECT_NE(Sample(played, {}, trial).summary.refused, "");
-  // From the thigh, where the waist has lost a marker.
+  // If the waist lacks a marker, motion relative to the thigh tells the clock.
   ScriptedTrial without = played;
   without.markers.positions.leftCols(3).setConstant(kNaN);
   trial.free_root = true;
@@ -146,7 +146,7 @@ TEST(SampleTrial, FindsLagAndDriftOfTheClock) {
   for (const auto& [lag, drift] : {std::pair{4.0, 20.0}, std::pair{-4.0, -20.0}}) {
     PlayOptions options{.postures = 60, .lag_s = lag, .drift_ppm = drift};
     ScriptedTrial played = PlayStanding(options);
-    // The robot's log begins 4 s late: its time begins at 0 as the cameras' does.
+    // The log begins 4 s late, and both clocks begin at 0.
     const Eigen::Index late = 800;
     const Eigen::Index left = played.log.time_s.size() - late;
     played.log.time_s = played.log.time_s.tail(left).eval();
@@ -158,13 +158,13 @@ TEST(SampleTrial, FindsLagAndDriftOfTheClock) {
     for (const double time : {0.0, 300.0}) {
       EXPECT_LT(std::abs(clock.RobotTime(time) - ((1.0 + 1e-6 * drift) * time - lag)), 2e-3);
     }
-    EXPECT_EQ(samples.summary.postures, 59);  // the first rest was over
+    EXPECT_EQ(samples.summary.postures, 59);  // the first rest is over before
     ExpectTrue(samples, played);
   }
 }
 
-// Little motion tells the clock badly. Rests do not need it well: their samples are away from the
-// motion.
+// Little motion tells the clock badly. Rests need no precise clock, because their samples are away
+// from motions.
 TEST(SampleTrial, TakesRestsWhoseClockIsRoughlyKnown) {
   const ScriptedTrial played = PlayStanding({.postures = 16, .range = 0.03});
   const TrialSamples samples = Sample(played);
@@ -179,7 +179,7 @@ TEST(SampleTrial, BearsFivePerCentOfSamplesMissing) {
   const auto frames = static_cast<int>(played.markers.positions.rows());
   for (int marker = 0; marker < 12; ++marker) {
     for (int missing = 0; missing < frames / 20;) {
-      // Some shorter, some longer than what is filled.
+      // Some gaps are shorter and some longer than those that are filled.
       const int size = 1 + random.Index(40);
       Hide(played.markers, marker, random.Index(frames - size), size);
       missing += size;
@@ -255,7 +255,7 @@ TEST(SampleTrial, LeavesBadTorqueSensorsOut) {
 
 TEST(SampleTrial, UsesWhatALogThatEndsEarlyCovers) {
   ScriptedTrial played = PlayStanding();
-  const Eigen::Index kept = 200 * 71;  // within the 15th posture's rest, from 70 s
+  const Eigen::Index kept = 200 * 71;  // within the 15th posture's rest from 70 s on
   played.log.time_s.conservativeResize(kept);
   played.log.positions.conservativeResize(kept, Eigen::NoChange);
   played.log.torques.conservativeResize(kept, Eigen::NoChange);
@@ -278,8 +278,8 @@ TEST(SampleTrial, TakesMomentsOfASineMotion) {
   EXPECT_NEAR(samples.summary.postures, 220, 5);
   for (Eigen::Index i = 1; i < samples.time_s.size(); ++i) {
     EXPECT_NEAR(samples.time_s[i] - samples.time_s[i - 1], 0.1, 1e-9);
-    // The filter rounds the motion of both by the same, so that what is left is that postures of
-    // filtered angles are not filtered postures.
+    // The filter smooths both motions alike. What remains is the difference between postures of
+    // filtered angles and filtered postures.
     const Eigen::VectorXd q = motion.At(samples.time_s[i]);
     EXPECT_LT((samples.q.row(i).transpose() - q).cwiseAbs().maxCoeff(), 5e-3);
     const Eigen::VectorXd markers = PlayedPositions(robot, kFoot, samples.q.row(i));

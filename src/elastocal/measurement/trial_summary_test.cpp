@@ -10,8 +10,8 @@
 namespace elastocal {
 namespace {
 
-// Two limbs' markers with each other's labels fit neither cluster; one that is off alone was
-// displaced, and so were two of one cluster.
+// If two limbs' markers have each other's labels, neither fits its cluster. A single marker that
+// does not fit was displaced, and so were two of one cluster.
 TEST(TrialSummary, TwoMarkersThatAreOffMostOfTheTimeMayHaveEachOthersLabels) {
   const auto findings = [](const std::vector<std::pair<int, int>>& off) {
     TrialSummary summary;

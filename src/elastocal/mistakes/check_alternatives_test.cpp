@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-/// Postures of four markers anywhere within a metre.
+/// Postures of four markers at random positions within a metre.
 Recording FourMarkers(Eigen::MatrixXd& predicted) {
   Random random(7);
   Recording recording;
@@ -32,7 +32,7 @@ TEST(CheckAlternatives, TheScaleOfMarkersIsThatOfTheCameras) {
   EXPECT_NEAR(ScaleOfMarkers(recording, predicted), 1.01, 1e-12);
 }
 
-// Where each posture has a pose of its own, its place says nothing of the scale.
+// If each posture has its own pose, its place tells nothing about the scale.
 TEST(CheckAlternatives, TheScaleOfAFreeRootIsWithinPostures) {
   Eigen::MatrixXd predicted;
   Recording recording = FourMarkers(predicted);

@@ -19,7 +19,7 @@ std::vector<std::string> Beside(const std::vector<int>& coordinates,
 
 using Names = std::vector<std::string>;
 
-// Thigh, shank and foot are behind the joints 3, 4 and 6.
+// Joints 3, 4 and 6 carry thigh, shank and foot.
 const LabelCluster kThigh{"THIGH", {0, 1, 2}}, kShank{"SHANK", {3, 4, 5}}, kFoot{"FOOT", {6, 7, 8}};
 
 TEST(ClustersBeside, AreOnEitherSide) {
@@ -32,7 +32,7 @@ TEST(ClustersBeside, AreOnEitherSide) {
   EXPECT_TRUE(Beside({}, all).empty());
 }
 
-// What was not seen separates nothing.
+// A cluster that was not seen separates no others.
 TEST(ClustersBeside, OfThoseThatWereSeen) {
   EXPECT_EQ(Beside({5}, {kThigh, kFoot}), (Names{"THIGH", "FOOT"}));
 }

@@ -11,7 +11,7 @@
 namespace elastocal {
 namespace {
 
-/// Elements of several kinds: those of one kind are explained together, and no others.
+/// Elements of several kinds. One explanation fits all elements of one kind and no others.
 struct Kinds {
   std::vector<int> of;
   int fits = 0;
@@ -34,7 +34,7 @@ TEST(CollectAlike, LargestSetFirst) {
   EXPECT_EQ((*sets)[0].error, 0.5);
   EXPECT_EQ((*sets)[1].elements, (std::vector<std::size_t>{0, 3}));
   EXPECT_EQ((*sets)[2].elements, (std::vector<std::size_t>{5}));
-  EXPECT_EQ((*sets)[2].error, 0.1);  // by itself
+  EXPECT_EQ((*sets)[2].error, 0.1);  // this element alone
 }
 
 TEST(CollectAlike, OneForeignElementAmongFiftyTakesFewFits) {
@@ -52,7 +52,7 @@ TEST(CollectAlike, ThreeKindsInTurnsAreCollected) {
   EXPECT_EQ(sets->size(), 3u);
 }
 
-// 2401 fits otherwise.
+// Without the limit there would be 2401 fits.
 TEST(CollectAlike, WhereAllDifferTheFitsAreLimited) {
   Kinds kinds;
   for (int k = 0; k < 50; ++k) kinds.of.push_back(k);

@@ -66,7 +66,8 @@ TEST_F(StatedCorrections, AreDoneWhereTheySay) {
   EXPECT_DOUBLE_EQ(measured_.trials[0].scale->size, 0.0) << "what the reference lengths say then";
 }
 
-// What was corrected in every trial that judges says nothing of what the robot's log is like now.
+// If a correction applies to all trials that judge, nothing confirms that the robot's log is right
+// now.
 TEST_F(StatedCorrections, OfAllTrialsThatJudgeConfirmNothing) {
   const auto trials = [&](const std::vector<std::string>& names, TrialKind kind) {
     Recording recording = measured_.calibration;
@@ -95,8 +96,8 @@ TEST_F(StatedCorrections, OfAllTrialsThatJudgeConfirmNothing) {
             0u)
       << found[0];
   EXPECT_NE(found[0].find("(c, d)"), std::string::npos) << found[0];
-  EXPECT_TRUE(objections({in_c}).empty());                      // d confirms the estimate
-  EXPECT_TRUE(objections({"gain:turret_joint=1.05"}).empty());  // one log, wrong throughout
+  EXPECT_TRUE(objections({in_c}).empty());                      // trial d confirms the estimate
+  EXPECT_TRUE(objections({"gain:turret_joint=1.05"}).empty());  // a gain is wrong in the whole log
   EXPECT_TRUE(objections({"offset:turret_joint@a=2", "offset:turret_joint@b=2"}).empty());
   EXPECT_TRUE(objections({"sign:turret_joint"}).empty());
   measured_.validation.markers.bottomRows(2).setConstant(std::nan(""));
@@ -115,7 +116,7 @@ TEST_F(StatedCorrections, HaveTheNamesThatFaultsAreGiven) {
   EXPECT_NEAR(ParseStatedCorrection(*name(offset), project_.tree)->size, offset.size, 1e-12);
 }
 
-// From the second posture of trial a on: trial b has it whole.
+// The offset begins in the second posture of trial a, and applies to all of trial b.
 TEST_F(StatedCorrections, OfAnOffsetFromAPostureOnHaveANameForEachTrial) {
   Recording& recording = measured_.calibration;
   recording.trial = {0, 0, 0, 1, 1};

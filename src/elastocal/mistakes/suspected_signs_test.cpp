@@ -38,7 +38,7 @@ TEST(SuspectedSigns, AllJointsThatMove) {
   EXPECT_EQ(Coordinates(signs, 5), (std::vector<int>{0, 1, 3, 4, 5}));
 }
 
-// Each takes a fit, and a humanoid has 30.
+// Each sign needs a fit, and a humanoid has 30 joints.
 TEST(SuspectedSigns, NoneOfManyJoints) {
   RobotTree tree = MakeRoot();
   int link = 0;
@@ -51,7 +51,7 @@ TEST(SuspectedSigns, NoneOfManyJoints) {
   EXPECT_EQ(AllSigns(tree, recording).size(), 12u);
 }
 
-// Either explains what the markers show.
+// Reversing either joint explains what the markers show.
 TEST(SuspectedSigns, OfATurnedAxisAndOfTheJointBefore) {
   CalibrationResult result = Nominal();
   const Recording recording = Moving(4, 6);

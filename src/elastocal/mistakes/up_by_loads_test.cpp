@@ -14,8 +14,8 @@
 namespace elastocal {
 namespace {
 
-/// Thirty postures of the arm with errors of its zeros, which is upright in a frame whose axis `up`
-/// points up, and whose joints give way by `compliance` [rad/(N.m)].
+/// Thirty postures of the arm with errors of its zeros. Axis `up` of the frame points up, and the
+/// joints give way by `compliance` [rad/(N.m)].
 Measurements Record(const Project& given, const Eigen::Vector3d& up, double compliance) {
   Project project = given;
   project.elasticity.torsion = std::vector<std::string>{"*"};
@@ -47,8 +47,8 @@ Measurements Record(const Project& given, const Eigen::Vector3d& up, double comp
 
 class UpByLoadsTest : public testing::Test {
  protected:
-  /// The axis that is found where z is stated to be up; empty if none is.
-  /// `calibrated`: error of the robot as it was calibrated with z up, m.
+  /// The axis that is found although z is stated to be up; empty if none is found.
+  /// `calibrated`: error of the robot when it is calibrated with z up, m.
   std::string Found(const Eigen::Vector3d& up, double compliance, double calibrated = 1.0) const {
     const auto found = FindUpByLoads(project_, {}, Record(project_, up, compliance), calibrated);
     return found ? found->axis : "";
@@ -62,11 +62,11 @@ TEST_F(UpByLoadsTest, AWrongAxisIsTold) {
   EXPECT_EQ(Found(-Eigen::Vector3d::UnitX(), 1e-4), "-x");
 }
 
-// Noise is most of both errors: with y up springs explain something, with z up nothing. Not where
-// causes explain as much with z up.
+// Both errors are mostly noise. With y up, springs explain something; with z up, nothing. No axis
+// is named if causes explain as much with z up.
 TEST_F(UpByLoadsTest, AWrongAxisIsToldBesideNoise) {
   EXPECT_EQ(Found(Eigen::Vector3d::UnitY(), 2e-5), "y");
-  EXPECT_EQ(Found(Eigen::Vector3d::UnitY(), 1.5e-5), "y");  // only noise is left
+  EXPECT_EQ(Found(Eigen::Vector3d::UnitY(), 1.5e-5), "y");  // only noise remains
   EXPECT_EQ(Found(Eigen::Vector3d::UnitY(), 2e-5, 0.3e-3), "");
   EXPECT_EQ(Found(Eigen::Vector3d::UnitZ(), 2e-5), "");
 }
@@ -76,8 +76,8 @@ TEST_F(UpByLoadsTest, TheRightAxisAndARigidRobotAreNotAccused) {
   EXPECT_EQ(Found(Eigen::Vector3d::UnitY(), 0.0), "");
 }
 
-// No axis explains a gain of a joint, nor an encoder whose disc is off centre: -z and -x leave less
-// than z, but many times the noise.
+// No axis explains the gain of a joint or an eccentric encoder disc. Axes -z and -x have smaller
+// errors than z, but many times the noise.
 TEST_F(UpByLoadsTest, AnAxisThatIsMerelyBetterIsNone) {
   Measurements gain = Record(project_, Eigen::Vector3d::UnitZ(), 2e-5);
   gain.calibration.q.col(1) *= 1.05;
@@ -88,7 +88,7 @@ TEST_F(UpByLoadsTest, AnAxisThatIsMerelyBetterIsNone) {
   EXPECT_FALSE(FindUpByLoads(project_, {}, disc, 1.0));
 }
 
-// Springs would be more unknowns than ten postures of one marker have equations.
+// Ten postures of one marker have fewer equations than the springs have unknowns.
 TEST_F(UpByLoadsTest, TooFewEquationsSayNothing) {
   Measurements few = Record(project_, Eigen::Vector3d::UnitY(), 1e-4);
   few.calibration = SelectPostures(few.calibration, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9});

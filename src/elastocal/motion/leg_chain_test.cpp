@@ -12,14 +12,14 @@
 namespace elastocal {
 namespace {
 
-/// A leg with the joints of these letters (the axis that each turns about; "t" is a joint about the
-/// thigh), 0.1 m to the left. Its last link is the sole.
+/// A leg whose hip is 0.1 m to the left, with a joint for each letter: the axis that it turns
+/// about, or "t" for one about the thigh. Its last link is the sole.
 RobotTree OneLeg(const std::string& axes) {
   RobotTree tree = MakeRoot();
   int link = 0, pitches = 0;
   for (const char axis : axes) {
     const bool pitch = axis == 'y';
-    // Hip, knee and ankle bend: 0.4 m of thigh, in halves where something turns it, and of shank.
+    // Thigh and shank are 0.4 m long. A joint that turns the thigh is in its middle.
     const bool turned = axes.find('t') != std::string::npos;
     const double down = axis == 't' || (pitch && pitches == 1 && turned) ? -0.2
                         : pitch && pitches > 0                           ? -0.4
@@ -48,7 +48,8 @@ TEST(LegChain, OfSevenJointsStaysNearWhereItIsPlacedFrom) {
     ASSERT_TRUE(leg.Place(leg.SolePose(q), found));
     const Transform off = leg.SolePose(found).inverse() * leg.SolePose(q);
     EXPECT_LT(off.translation().norm() + RotationAngle(off.linear()), 1e-10);
-    // Of all postures with this sole, the nearest but for the curvature of a step of 0.1 rad.
+    // Of all postures with this pose of the sole, this is the nearest, apart from the curvature
+    // over a step of 0.1 rad.
     EXPECT_LT((found - rest).norm(), 1.05 * (q - rest).norm());
   }
 }
@@ -70,7 +71,7 @@ TEST(LegChain, OfSevenJointsWithAPreferenceGoesByThePoseAlone) {
   }
 }
 
-/// A leg of five joints with a bent knee, and a place nearby for its sole.
+/// A leg of five joints with a bent knee, and a place for its sole nearby.
 class FiveJointLeg : public testing::Test {
  protected:
   FiveJointLeg() : tree_(OneLeg("xyyyx")), leg_(tree_, {FindLink(tree_, "sole")}), q_(5) {
@@ -101,7 +102,7 @@ TEST_F(FiveJointLeg, PutsItsSoleFlatWhateverItsHeading) {
 }
 
 TEST(LegChain, JointsOfALegMayFollowEachOther) {
-  // The second knee bends as much as the first.
+  // The second knee always bends like the first.
   RobotTree tree = OneLeg("zxyyyyx");
   for (const std::size_t k : {4u, 5u, 6u}) tree.joints[k].coordinate -= 1;
   tree.joints[4].mimic = true;
@@ -119,7 +120,7 @@ TEST(LegChain, JointsOfALegMayFollowEachOther) {
 }
 
 TEST(LegChain, AJointThatOthersShareStaysAndTheRootTurnsInstead) {
-  // The other foot follows the hip's joint about the vertical.
+  // A mimic joint of the other leg follows the hip's joint about the vertical.
   RobotTree tree = OneLeg("zxyyyx");
   const Sole other{AddJoint(tree, "other", 0, Offset(0, -0.1, 0), {0, 1, 0})};
   MakeLastJointMimic(tree, 0, 1.0, 0.0);
@@ -142,7 +143,7 @@ TEST(LegChain, AJointThatOthersShareStaysAndTheRootTurnsInstead) {
   EXPECT_EQ(q[0], 0.3);
   EXPECT_EQ(T_world_root.translation(), place);
   const Eigen::Vector3d turn = RotationVector(T_world_root.linear() * before.transpose());
-  EXPECT_NEAR(turn.z(), -0.3, 0.02);  // by what the hip turns the leg, but for the lean
+  EXPECT_NEAR(turn.z(), -0.3, 0.02);  // what the hip turns the leg, apart from its lean
   EXPECT_LT(turn.head<2>().norm(), 1e-9);
 
   const RobotTree alone = OneLeg("zxyyyx");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Balanced motions of a small biped, from the legs' kinematics to a whole set of postures.
+// Balanced motions of a small biped: the kinematics of its legs, up to motions through a whole set
+// of postures.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -28,7 +29,7 @@ class BalancedWalker : public testing::Test {
     return q;
   }
 
-  /// The hand must stay out of a ball before the robot.
+  /// A ball in front of the robot, which the hand must avoid.
   void PutBallInTheWay() {
     const int hand = walker_.hand;
     robot_.clearances = [this, hand](const Eigen::VectorXd& q) -> Eigen::VectorXd {
@@ -52,7 +53,7 @@ TEST_F(BalancedWalker, PlacesItsFeetWhereItIsTold) {
     const Transform wanted = leg.SolePose(q);
     Eigen::VectorXd found = robot_.rest;
     ASSERT_TRUE(leg.Place(wanted, found));
-    // The solver's own tolerance, over the least singular value of a bent leg, some 0.1.
+    // The tolerance is that of the solver, over the least singular value of a bent leg, some 0.1.
     EXPECT_LT((found - q).norm(), 1e-9);
     EXPECT_LT((LinkTransforms(robot_.tree, found)[static_cast<std::size_t>(leg.sole_link())]
                    .translation() -
@@ -64,7 +65,7 @@ TEST_F(BalancedWalker, PlacesItsFeetWhereItIsTold) {
   EXPECT_FALSE(leg.Place(Offset(0, 0.085, -1.3), q));  // longer than the leg
 }
 
-// 0.35 m - 0.343 m is less than 2 % of 0.35 m by a rounding.
+// Because of rounding, 0.35 m - 0.343 m is less than 2 % of 0.35 m.
 TEST_F(BalancedWalker, MayStandAtItsMargin) {
   MotionMargins margins = CheckMotion(robot_, {100.0, robot_.rest.transpose(), {robot_.AllFeet()}});
   margins.position.value = robot_.limits.position_margin - 1e-12;
@@ -77,12 +78,13 @@ TEST_F(BalancedWalker, RestsOverItsFeet) {
   const MotionMargins margins =
       CheckMotion(robot_, {100.0, robot_.rest.transpose(), {robot_.AllFeet()}});
   EXPECT_FALSE(Broken(margins, robot_.limits));
-  EXPECT_NEAR(margins.zmp.value, 0.1, 1e-9);  // the middle of soles 0.2 m long
+  EXPECT_NEAR(margins.zmp.value, 0.1, 1e-9);  // from the middle of soles that are 0.2 m long
   EXPECT_LT(margins.foot_moved.value, 1e-10);
 }
 
 TEST_F(BalancedWalker, KeepsTheZeroMomentPointInFastMotions) {
-  // Two seconds to turn and bend the trunk by 0.8 rad: what statics alone leaves is centimetres.
+  // The trunk turns and bends by 0.8 rad in two seconds. With statics alone, the error is
+  // centimetres.
   Stretch stretch;
   stretch.standing = robot_.AllFeet();
   stretch.begin = {robot_.rest, robot_.T_world_root};
@@ -106,8 +108,8 @@ TEST_F(BalancedWalker, KeepsTheZeroMomentPointInFastMotions) {
     return (found.zmp - stretch.zmp).rowwise().norm().maxCoeff();
   };
   EXPECT_GT(largest(0), 0.03);
-  // Each pass leaves a part of the error; at the ends, where the root link stands still, some
-  // millimetres remain.
+  // Each pass reduces the error. At the ends, where the root link stands still, some millimetres
+  // remain.
   EXPECT_LT(largest(6), 0.004);
 
   const BalancedStretch found = Balance(robot_, stretch, {});
@@ -117,11 +119,12 @@ TEST_F(BalancedWalker, KeepsTheZeroMomentPointInFastMotions) {
   const MotionMargins margins = CheckMotion(robot_, motion, &forces);
   EXPECT_LT(margins.foot_moved.value, 1e-9);
   EXPECT_LT(margins.foot_turned.value, 1e-9);
-  // The check finds the root link and the zero-moment point by another way than the planner.
+  // The check computes the root link's pose and the zero-moment point in another way than the
+  // planner.
   EXPECT_LT((forces.zmp - found.zmp).cwiseAbs().maxCoeff(), 1e-6);
 }
 
-// Inverse dynamics know joints; the poses of the links alone have to tell the same.
+// Inverse dynamics use the joints. The poses of the links alone must give the same.
 TEST_F(BalancedWalker, ZeroMomentPointOfLinksIsThatOfTheJoints) {
   constexpr int kSamples = 201;
   SampledMotion motion{100.0, robot_.rest.transpose().replicate(kSamples, 1), {}};
@@ -177,10 +180,10 @@ TEST_F(BalancedWalker, VisitsPosturesOnOneFoot) {
   ASSERT_EQ(planned.visits.size(), 3u);
   const MotionMargins margins = CheckMotion(robot_, planned.motion);
   EXPECT_FALSE(Broken(margins, robot_.limits));
-  // Begins and ends at rest on both feet.
+  // The motion begins and ends at rest on both feet.
   EXPECT_LT((planned.motion.q.row(0).transpose() - robot_.rest).norm(), 1e-9);
   EXPECT_LT((planned.motion.q.bottomRows(1).transpose() - robot_.rest).norm(), 1e-9);
-  // Accelerations are bounded: no jump where stretches meet.
+  // Accelerations are bounded, so that there is no jump where stretches meet.
   EXPECT_LT(margins.acceleration.value, 5.0);
   for (const Visit& visit : planned.visits) {
     const Eigen::VectorXd& wanted = set.postures[static_cast<std::size_t>(visit.posture)];
@@ -192,8 +195,8 @@ TEST_F(BalancedWalker, VisitsPosturesOnOneFoot) {
   }
 }
 
-// Parts that would be further from each other if the waist leaned are no reason to lean: the lifted
-// foot would be elsewhere, and the motion would jump there.
+// The waist must not lean to move parts away from each other: the lifted foot would be elsewhere,
+// and the motion would jump there.
 TEST_F(BalancedWalker, LiftsAFootToWhereItIsTold) {
   const PlanOptions options = SizedOptions(robot_, {});
   const MoveBuilder build(robot_, options);
@@ -224,7 +227,7 @@ TEST_F(BalancedWalker, GoesAroundWhatIsInTheWay) {
   PutBallInTheWay();
   const Eigen::VectorXd from = Posture(0, 0, -1.0), to = Posture(0, 0, 1.0);
   const JointPath blind = PlanJointPath(robot_, robot_.clearances, from, to, {2}, {});
-  EXPECT_LT(blind.clearance, 0.0);  // one joint knows no way around
+  EXPECT_LT(blind.clearance, 0.0);  // with one joint there is no way around
   const JointPath path = PlanJointPath(robot_, robot_.clearances, from, to, {0, 1, 2}, {});
   EXPECT_GE(path.clearance, JointPathOptions{}.clearance);
   const Eigen::MatrixXd way = SamplePath(path, 100.0);
@@ -233,7 +236,7 @@ TEST_F(BalancedWalker, GoesAroundWhatIsInTheWay) {
   }
 }
 
-// A wall in the space of the joints, with a door at one end: no push along the gradient finds it.
+// A wall in joint space with a door at one end, which no push along the gradient finds.
 TEST_F(BalancedWalker, GoesThroughADoorFarFromTheStraightWay) {
   double door = 0.9;
   robot_.clearances = [&](const Eigen::VectorXd& q) -> Eigen::VectorXd {
@@ -249,14 +252,14 @@ TEST_F(BalancedWalker, GoesThroughADoorFarFromTheStraightWay) {
   for (Eigen::Index i = 0; i < way.rows(); ++i) {
     EXPECT_GT(robot_.clearances(way.row(i).transpose())[0], 0.01);
   }
-  door = 10.0;  // none: the way is the pushed one
+  door = 10.0;  // without a door, the planner pushes the path
   EXPECT_LT(PlanJointPath(robot_, robot_.clearances, from, to, {1, 2}, {}).clearance, 0.0);
 }
 
 TEST_F(BalancedWalker, LeavesOutWhatItCannotDoAndSaysWhy) {
   PostureTour set{.name = "left", .standing = {1}, .postures = {}};
   Eigen::VectorXd far = robot_.rest;
-  far[0] = 1.3;  // beyond the trunk's limit
+  far[0] = 1.3;  // beyond the limit of the trunk
   set.postures = {Posture(0.5, 0, 0), far};
   const PlannedTour planned = PlanTour(robot_, set, {});
   ASSERT_EQ(planned.left_out.size(), 1u);
@@ -266,7 +269,7 @@ TEST_F(BalancedWalker, LeavesOutWhatItCannotDoAndSaysWhy) {
   EXPECT_TRUE(planned.left_out[0].at_rest);
   EXPECT_EQ(planned.visits.size(), 1u);
 
-  robot_.limits.torque_share = 0.05;  // nothing can be done
+  robot_.limits.torque_share = 0.05;  // no posture is possible
   const PlannedTour none = PlanTour(robot_, set, {});
   EXPECT_EQ(none.left_out.size(), 2u);
   EXPECT_EQ(none.left_out[0].constraint, Constraint::kTorque);

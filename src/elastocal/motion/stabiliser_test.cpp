@@ -25,7 +25,7 @@ class BipedStabiliser : public testing::Test {
     const Eigen::Vector3d com = CentreOfMass(tree_, BodyInertias(tree_), planned_);
     sense_.wrenches.setZero(6, 2);
     const double y[] = {T_root_sole_[0].translation().y(), T_root_sole_[1].translation().y()};
-    for (Eigen::Index i = 0; i < 2; ++i) {  // the weight by the lever rule, in line with the middle
+    for (Eigen::Index i = 0; i < 2; ++i) {  // lever rule; pressure below the centre of mass
       const double share = (com.y() - y[1 - i]) / (y[i] - y[1 - i]);
       const double ahead = com.x() - T_root_sole_[static_cast<std::size_t>(i)].translation().x();
       const double force = 2.0 * kHalf * share;
@@ -33,7 +33,7 @@ class BipedStabiliser : public testing::Test {
     }
   }
 
-  /// The root link's pose in the first sole after ten steps of 10 ms, against the planned one.
+  /// The root link's pose in the first sole after ten steps of 10 ms, relative to the planned pose.
   Transform RootMoved() {
     Stabiliser stabiliser(tree_, soles_);
     Eigen::VectorXd q;
@@ -80,7 +80,8 @@ TEST_F(BipedStabiliser, ShiftsBackWhatPressesAheadOfItsPlan) {
   EXPECT_NEAR(moved.translation().y(), 0.0, 1e-6);
 }
 
-// Its kinematics are known: a load that is off at rest is one of masses, and only more moves it.
+// The kinematics are known, so a load that is off at rest comes from masses. Only what is added
+// later moves the robot.
 TEST_F(BipedStabiliser, LeavesAloneWhatWasOffInTheRest) {
   for (Eigen::Index i = 0; i < 2; ++i) sense_.wrenches(4, i) -= kHalf * 0.03;  // 3 cm ahead
   const std::vector<int> support = {soles_[0].link, soles_[1].link};
@@ -94,8 +95,8 @@ TEST_F(BipedStabiliser, LeavesAloneWhatWasOffInTheRest) {
 }
 
 TEST_F(BipedStabiliser, TurnsFeetUntilBothArePressedAlike) {
-  sense_.wrenches(4, 0) -= kHalf * 0.05;  // the left one on its toes: they are to be lifted
-  sense_.wrenches(4, 1) += kHalf * 0.05;  // the right one on its heel
+  sense_.wrenches(4, 0) -= kHalf * 0.05;  // the left foot presses on its toes: lift them
+  sense_.wrenches(4, 1) += kHalf * 0.05;  // the right foot presses on its heel
   Stabiliser stabiliser(tree_, soles_);
   Eigen::VectorXd q;
   for (int i = 0; i < 10; ++i) {
@@ -110,7 +111,7 @@ TEST_F(BipedStabiliser, TurnsFeetUntilBothArePressedAlike) {
 }
 
 TEST_F(BipedStabiliser, LiftsAFootThatIsTooLow) {
-  // A left leg that is too long: both soles are pressed 2 cm towards the middle of the robot.
+  // The left leg is too long, so that both soles are pressed 2 cm towards the middle of the robot.
   sense_.wrenches(3, 0) -= sense_.wrenches(2, 0) * 0.02;
   sense_.wrenches(3, 1) -= sense_.wrenches(2, 1) * 0.02;
   Stabiliser stabiliser(tree_, soles_);
@@ -158,14 +159,14 @@ TEST_F(BipedStabiliser, LetsALiftedLegGoAsPlanned) {
   EXPECT_FALSE(left.SolePose(q).isApprox(left.SolePose(lifted), 1e-6));
 }
 
-// A lifted leg near its full length cannot follow the root link's shift: it would have to swing
+// A lifted leg that is nearly stretched cannot follow the root link's shift: it would have to swing
 // far.
 TEST_F(BipedStabiliser, AsksLittleOfALiftedLegThatWouldHaveToStretch) {
   const LegChain left(tree_, soles_[0]), right(tree_, soles_[1]);
   const auto position = [&](const char* joint) -> double& {
     return planned_[tree_.joints[static_cast<std::size_t>(FindJoint(tree_, joint))].coordinate];
   };
-  // Little bent, and as far ahead as it has to be to be just above the floor.
+  // The leg is bent little, and reaches ahead until its foot is just above the floor.
   const auto height = [&] {
     return (left.SolePose(planned_).inverse() * right.SolePose(planned_)).translation().z();
   };
@@ -175,8 +176,8 @@ TEST_F(BipedStabiliser, AsksLittleOfALiftedLegThatWouldHaveToStretch) {
     position("right_5") = -0.2 + 0.01 * i;
   }
   ASSERT_NEAR(height(), 0.012, 0.002);
-  // The root link is turned until the lifted leg, to keep its sole in place, would be stretched
-  // out.
+  // The root link turns so that the lifted leg would have to stretch fully to keep its sole in
+  // place.
   sense_.R_world_root = RotationFromVector({0.05, -0.05, 0.0});
   Stabiliser stabiliser(tree_, soles_);
   const auto largest = [&](const LegChain& leg, const Eigen::VectorXd& q) {

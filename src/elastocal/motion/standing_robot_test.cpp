@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots that stand up, are held, lift a foot or cannot.
+// Robots that stand, that are held, that lift a foot, or that cannot.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(HeldRobot, VisitsItsPosturesWithoutBalanceAndWithTheTorquesOfStatics) {
   StandUp(robot, NeutralPosture(robot.tree, 0.05), {});
   PostureTour set{"all", {}, {robot.rest, robot.rest}, false, {}};
   set.postures[0].head<3>() << 0.8, -0.5, 0.3;
-  set.postures[0][5] = -1.0;  // a hip: the legs hang
+  set.postures[0][5] = -1.0;  // a hip joint: its leg hangs
   set.postures[1].head<3>() << -0.4, 0.6, -1.0;
   const PlannedTour planned = PlanTour(robot, set, {});
   EXPECT_TRUE(planned.left_out.empty());
@@ -47,7 +47,7 @@ TEST(HeldRobot, VisitsItsPosturesWithoutBalanceAndWithTheTorquesOfStatics) {
   MotionForces forces;
   const MotionMargins margins = CheckMotion(robot, planned.motion, &forces);
   EXPECT_FALSE(Broken(margins, robot.limits));
-  EXPECT_LT(margins.zmp.sample, 0);  // nothing stands
+  EXPECT_LT(margins.zmp.sample, 0);  // no foot stands
   for (const Visit& visit : planned.visits) {
     const int middle = (visit.begin + visit.end) / 2;
     const Eigen::VectorXd q = planned.motion.q.row(middle).transpose();
@@ -57,7 +57,7 @@ TEST(HeldRobot, VisitsItsPosturesWithoutBalanceAndWithTheTorquesOfStatics) {
     EXPECT_EQ(forces.T_world_root[static_cast<std::size_t>(middle)].matrix(),
               robot.T_world_root.matrix());
   }
-  // A limit that is broken is seen as in any other motion: the leg held ahead needs 30 of 150 N.m.
+  // Limits are checked as in any other motion: the leg that is held ahead needs 30 of its 150 N.m.
   robot.limits.torque_share = 0.1;
   EXPECT_FALSE(PlanTour(robot, set, {}).left_out.empty());
 }
@@ -65,7 +65,7 @@ TEST(HeldRobot, VisitsItsPosturesWithoutBalanceAndWithTheTorquesOfStatics) {
 TEST(StandingRobot, LengthsOfAMotionFollowFromItsSize) {
   const Walker walker = MakeWalker();
   const StandingRobot robot(walker.tree, walker.soles, {});
-  EXPECT_NEAR(robot.leg_length, 0.38 + 0.325 + 0.107, 1e-12);  // the hip's axes meet
+  EXPECT_NEAR(robot.leg_length, 0.38 + 0.325 + 0.107, 1e-12);  // the axes of the hip meet
   EXPECT_NEAR(robot.half_support, 0.06, 1e-12);
   EXPECT_NEAR(robot.limits.zmp_margin, 0.3 * 0.06, 1e-12);
   const PlanOptions sized = SizedOptions(robot, {});
@@ -76,7 +76,7 @@ TEST(StandingRobot, LengthsOfAMotionFollowFromItsSize) {
   EXPECT_EQ(SizedOptions(robot, given).lift_m, 0.05);
 }
 
-// Bent knees take 0.5 rad of the ankle's pitch already, and a foot lifted flat would take 0.8.
+// Bent knees already use 0.5 rad of the ankle's pitch. To lift a foot flat would take 0.8 rad.
 TEST(StandingRobot, LiftsItsFootTiltedWhereTheAnkleBendsLittle) {
   Walker walker = MakeWalker();
   for (Joint& joint : walker.tree.joints) {
@@ -98,8 +98,8 @@ TEST(StandingRobot, LiftsItsFootTiltedWhereTheAnkleBendsLittle) {
   EXPECT_LT(tilt(0), 1e-9);
 }
 
-// Beside the leg that carries it, a lifted foot is further out than its hip: flat, it rolls the
-// more the higher it is.
+// A lifted foot passes the standing leg further out than its own hip. If it stays flat, its ankle
+// rolls more the higher it is.
 TEST(StandingRobot, LiftsItsFootTiltedWhereTheAnkleRollsLittle) {
   Walker walker = MakeWalker();
   const int roll = FindJoint(walker.tree, "right_6");

@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-/// Hock and Schittkowski (1981), problem 71 with its two constraints in two blocks: the known
+/// Problem 71 of Hock and Schittkowski (1981) with its two constraints in two blocks. The known
 /// minimum is 17.0140173 at (1, 4.742994, 3.8211503, 1.3794082).
 class HockSchittkowski71 : public NonlinearProgram {
  public:
@@ -48,7 +48,7 @@ TEST(NonlinearProgram, FindsAKnownConstrainedMinimum) {
   HockSchittkowski71 program;
   const auto result = Solve(program, Eigen::Vector4d(1.0, 5.0, 5.0, 1.0), {});
   EXPECT_EQ(result.termination, Termination::kConverged);
-  EXPECT_NEAR(result.objective, 17.0140173, 1e-5);  // of the tolerance's order
+  EXPECT_NEAR(result.objective, 17.0140173, 1e-5);  // of the order of the solver's tolerance
   EXPECT_NEAR(result.x[1], 4.742994, 1e-4);
   EXPECT_NEAR(program.Constraints()[1], 40.0, 1e-6);
 }
@@ -93,7 +93,7 @@ TEST(NonlinearProgram, StepsBackWhereItIsUndefined) {
   EXPECT_NEAR(result.x[0], 0.25, 1e-4);
 }
 
-/// A programme that throws when it is evaluated, or asked for its gradient, for the fifth time.
+/// A program that throws when its value or its gradient is evaluated for the fifth time.
 class Failing : public HockSchittkowski71 {
  public:
   explicit Failing(bool in_gradient) : in_gradient_(in_gradient) {}

@@ -9,7 +9,8 @@ namespace {
 
 TEST(QuasiNewtonHessian, BecomesTheHessianOfAQuadraticAlongConjugateSteps) {
   const Eigen::Matrix3d truth{{4.0, 1.0, 0.0}, {1.0, 3.0, 0.5}, {0.0, 0.5, 2.0}};
-  // Steps conjugate in the truth: with them BFGS is exact after as many as there are variables.
+  // The steps are conjugate with respect to the true Hessian. After one step per variable, BFGS is
+  // exact.
   Eigen::Matrix3d steps = Eigen::Matrix3d::Identity();
   for (int i = 1; i < 3; ++i) {
     for (int j = 0; j < i; ++j) {

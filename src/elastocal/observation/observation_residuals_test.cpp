@@ -13,7 +13,8 @@
 namespace elastocal {
 namespace {
 
-/// Largest difference between derivatives and central differences, over the norm of a column.
+/// Largest error of the derivatives against central differences, relative to the norm of its
+/// column.
 double LargestDifference(ObservationResiduals& residuals) {
   const Eigen::VectorXd x = residuals.Start();
   residuals.Evaluate(x, true);
@@ -23,7 +24,7 @@ double LargestDifference(ObservationResiduals& residuals) {
   }
   std::vector<Eigen::Index> first = {0};
   for (int size : residuals.parameter_blocks) first.push_back(first.back() + size);
-  // Of numbers about 1 to 100: the step's square leaves 1e-8, roundings 1e-9.
+  // Values are about 1 to 100: the step's square leaves 1e-8 of truncation, and rounding is 1e-9.
   const double step = 1e-4;
   double largest = 0.0;
   for (std::size_t block = 0; block + 1 < first.size(); ++block) {
@@ -66,7 +67,7 @@ void CheckDerivatives(const InstrumentedBiped& biped, std::uint64_t seed) {
   std::set<std::string> kinds;
   for (const Observation& of : all.all) kinds.insert(biped.model.instrument(of.instrument).kind());
   EXPECT_EQ(kinds.size(), biped.touches() ? 7u : 6u);
-  // Away from where everything fits; loads are constants of the problem, and bend the robot.
+  // The values do not fit the observations. Loads are constants of the problem and bend the robot.
   const ObservedValues at = RandomTruth(biped.model, biped.touches() ? 2 : 0, random);
   const std::vector<JointLoads> loads = ObservedLoads(biped.model, all, at.robot);
   const Spread spread = FirstSpread(biped.model.setup.sources);
@@ -87,7 +88,7 @@ TEST(ObservationResiduals, DerivativesOfAllKindsAgreeWithDifferencesWithAFixedRo
   for (std::uint64_t seed : {4u, 5u}) CheckDerivatives(biped, seed);
 }
 
-/// Corrections of joints; with a fixed root also of its suspension and of loads.
+/// Checks corrections of joints and, with a fixed root, those of its suspension and of loads.
 void CheckCorrections(const InstrumentedBiped& biped, std::size_t least, std::uint64_t seed) {
   Random random(seed);
   const ObservedValues truth = RandomTruth(biped.model, biped.touches() ? 2 : 0, random);
@@ -128,7 +129,8 @@ TEST(ObservationResiduals, AreThoseOfTheNominalRobotByHand) {
   for (int i = 0; i < 2; ++i) touches.q.row(i) = TouchingPosture(model, random);
   const ObservedValues nominal = NominalValues(model, touches);
   const Eigen::VectorXd left = LeftOf(model, touches, nominal)[1];
-  // By links of the URDF: with equal feet the root stands in the middle of both.
+  // With equal feet, the root stands in the middle of the poses that the two legs give by the links
+  // of the URDF.
   const ObservationSetup& setup = model.setup;
   const std::vector<Transform> T =
       LinkTransforms(model.robot.tree, Eigen::VectorXd(touches.q.row(1)));

@@ -6,7 +6,7 @@
 namespace elastocal {
 namespace {
 
-// A camera without distortion sees planes by projective maps: only rounding is left.
+// A camera without distortion maps planes projectively, so only rounding remains.
 TEST(SeenTag, CornersOfALargerTagAreThoseThatItShows) {
   SeenTag tag;
   tag.camera = {600.0, 620.0, 320.0, 240.0};

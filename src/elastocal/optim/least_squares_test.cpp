@@ -24,7 +24,7 @@ class Stored : public LeastSquaresProblem {
   std::vector<RowMajorMatrix> jacobians_;
 };
 
-/// 10 (y - x^2) and 1 - x: the minimum is 0 at (1, 1), at the end of a bent valley.
+/// 10 (y - x^2) and 1 - x: their minimum is 0 at (1, 1), at the end of a curved valley.
 class Rosenbrock : public Stored {
  public:
   Rosenbrock() {
@@ -43,8 +43,8 @@ class Rosenbrock : public Stored {
   int evaluations = 0;
 };
 
-/// Curves y_ij = a exp(b t_j) + c_i: block 0 is (a, b), common to all; block i + 1 is c_i. Residual
-/// block i holds the points of curve i, t_j = j / 10.
+/// Curves y_ij = a exp(b t_j) + c_i with t_j = j / 10. Parameter block 0 is (a, b), common to all
+/// curves, and block i + 1 is c_i. Residual block i holds the points of curve i.
 class Curves : public Stored {
  public:
   Curves(const Eigen::MatrixXd& y, bool eliminate) : y_(y) {
@@ -75,7 +75,7 @@ class Curves : public Stored {
   Eigen::MatrixXd y_;
 };
 
-/// Four curves of a = 2, b = -1, c_i = i, with a ripple that no parameter explains.
+/// Four curves with a = 2, b = -1 and c_i = i, and a ripple that no parameter explains.
 Eigen::MatrixXd MakeCurves() {
   Eigen::MatrixXd y(4, 15);
   for (int i = 0; i < y.rows(); ++i) {
@@ -94,7 +94,7 @@ LeastSquaresResult FitCurves(const Eigen::MatrixXd& y, bool eliminate,
   return Solve(problem, x0, options);
 }
 
-/// Readings of one number, each a block of its own.
+/// Readings of one number. Each reading is a residual block.
 class Mean : public Stored {
  public:
   explicit Mean(const Eigen::VectorXd& readings) : readings_(readings) {
@@ -118,7 +118,7 @@ TEST(LeastSquares, FollowsABentValley) {
   const LeastSquaresResult result = Solve(problem, Eigen::Vector2d(-1.2, 1.0), {});
   EXPECT_EQ(result.termination, Termination::kConverged);
   EXPECT_STREQ(TerminationName(result.termination), "converged");
-  // A problem without residual is solved to rounding.
+  // A problem whose residual vanishes is solved up to rounding.
   EXPECT_LT((result.x - Eigen::Vector2d(1, 1)).norm(), 1e-12);
   EXPECT_NEAR(result.initial_cost, 0.5 * (4.4 * 4.4 + 2.2 * 2.2), 1e-13);
   EXPECT_LT(result.final_cost, 1e-24);
@@ -132,15 +132,16 @@ TEST(LeastSquares, EliminationDoesNotChangeTheAnswer) {
   const LeastSquaresResult reduced = FitCurves(MakeCurves(), true);
   EXPECT_EQ(whole.termination, Termination::kConverged);
   EXPECT_EQ(reduced.termination, Termination::kConverged);
-  // Both stop when the cost stands still to 1e-14: the parameters are known to its root.
+  // Both solvers stop when the cost changes by less than 1e-14. The parameters are known to the
+  // square root of this.
   EXPECT_LT((whole.x - reduced.x).norm(), 1e-7);
   EXPECT_NEAR(whole.final_cost, reduced.final_cost, 1e-12 * whole.final_cost);
-  // And it is the answer: the ripple of 0.01 moves it by no more than that.
+  // The solution is the truth, apart from what the ripple of 0.01 changes.
   const Eigen::VectorXd truth = (Eigen::VectorXd(6) << 2, -1, 0, 1, 2, 3).finished();
   EXPECT_LT((whole.x - truth).cwiseAbs().maxCoeff(), 0.02);
 }
 
-// A block that takes no part is evaluated all the same.
+// A block that takes no part in the fit is still evaluated.
 TEST(LeastSquares, InactiveBlocksDoNotPull) {
   Eigen::VectorXd readings(5);
   readings << 0.9, 1.0, 1.1, 1.0, 11.0;
@@ -152,7 +153,7 @@ TEST(LeastSquares, InactiveBlocksDoNotPull) {
   EXPECT_NEAR(problem.Residual(4)[0], -10.0, 1e-9);
 }
 
-// From beyond the bound, with a minimum beyond it as well.
+// The start is beyond the bound, and so is the minimum.
 TEST(LeastSquares, BoundsHold) {
   Mean problem(Eigen::Vector3d(-1.0, -2.0, 0.5));
   problem.nonnegative = {0};
@@ -161,8 +162,8 @@ TEST(LeastSquares, BoundsHold) {
   EXPECT_EQ(result.x[0], 0.0);
 }
 
-/// x and 1 + x^2 / 2: at the minimum, 0, the curvature is twice that of the linearised problem, and
-/// its full steps lead from x to nearly -x.
+/// x and 1 + x^2 / 2: at the minimum 0, the curvature is twice that of the linearised problem. Its
+/// full steps lead from x to nearly -x.
 class Bowl : public Stored {
  public:
   Bowl() {
@@ -176,7 +177,7 @@ class Bowl : public Stored {
   }
 };
 
-// After 100 full steps x is 0.05.
+// With 100 full steps, x would be 0.05.
 TEST(LeastSquares, StepsAcrossTheMinimumAreShortened) {
   Bowl problem;
   const LeastSquaresResult result = Solve(problem, Eigen::VectorXd::Constant(1, 0.1));

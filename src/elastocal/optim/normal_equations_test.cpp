@@ -29,12 +29,12 @@ TEST_F(NormalEquationsTest, StepIsThatOfTheWholeProblem) {
   const Eigen::VectorXd step =
       equations.Expand(-equations.information().inverse() * equations.gradient());
   const Eigen::VectorXd whole = -problem_.Information().inverse() * problem_.Gradient(x);
-  // Linear: the ridge of 1e-12 on the nuisance is all that differs.
+  // The problem is linear. Only the ridge of 1e-12 on the nuisance parameters makes a difference.
   EXPECT_LT((step - whole).norm(), 1e-9);
   EXPECT_LT(problem_.Gradient(x + step).norm(), 1e-8);
 }
 
-// The cost falls by what the step and the nuisance together promise.
+// The cost falls by the sum of what the step and the nuisance parameters predict.
 TEST_F(NormalEquationsTest, DecreaseIsThatOfTheCost) {
   const Eigen::VectorXd x = Eigen::VectorXd::Ones(9);
   const NormalEquations equations = At(x);
@@ -61,11 +61,12 @@ TEST_F(NormalEquationsTest, ExplainedIsTheCovarianceOfThePrediction) {
   }
 }
 
-// The projection leaves of A what the nuisance does not explain of it, by the dense formula.
+// The projection leaves the part of A that the nuisance parameters do not explain. The dense
+// formula gives the same.
 TEST_F(NormalEquationsTest, ProjectionIsThatOfTheDenseProblem) {
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(9, 1.0, 0.0);
   const NormalEquations equations = At(x);
-  constexpr int kBlock = 6;  // of the second nuisance block, 3
+  constexpr int kBlock = 6;  // residual block that belongs to nuisance block 3, the second
   const Eigen::MatrixXd A = (Eigen::MatrixXd(3, 2) << 1, 2, -1, 0, 0.5, 3).finished();
   Eigen::Matrix2d D = Eigen::Matrix2d::Zero();
   Eigen::MatrixXd EJ = Eigen::MatrixXd::Zero(2, 3);
@@ -101,7 +102,7 @@ TEST_F(NormalEquationsTest, ScoresOfAllClustersAddUpToTheGradient) {
   EXPECT_GT(scores.col(1).norm(), 1e-3);
 }
 
-// One more unknown is what the whole problem, with a column more, has to say of it.
+// Adding an unknown gives the same as solving the whole problem with one more column.
 TEST_F(NormalEquationsTest, AdditionIsThatOfTheWholeProblem) {
   const NormalEquations equations = At(Eigen::VectorXd::LinSpaced(9, -1.0, 2.0));
   std::vector<Eigen::VectorXd> derivative;

@@ -10,7 +10,7 @@ namespace {
 
 class CoverageOfChains : public testing::Test {
  protected:
-  /// A trial of one chain in which its markers and those of the waist are seen.
+  /// A trial of one chain that shows its markers and those of the waist.
   Recording Shown(const std::string& chain) const {
     Recording recording;
     recording.trials = {{.name = chain, .chains = {chain}}};
@@ -23,7 +23,7 @@ class CoverageOfChains : public testing::Test {
     return recording;
   }
 
-  /// With another chain that has the joints of the left arm.
+  /// The project with another chain that has the joints of the left arm.
   Project WithWholeLeftArm() const {
     Project project = project_;
     const int left = FindLink(project.tree, "left_hand");
@@ -48,7 +48,7 @@ TEST_F(CoverageOfChains, AChainWhoseTrialsAreAllRefusedIsNotDeployed) {
   Verdict verdict;
   verdict.objections = {"another"};
   JudgeCoverage(FindCoverage(project_, measured), verdict);
-  ASSERT_EQ(verdict.objections.size(), 2u);  // the left arm was recorded once more
+  ASSERT_EQ(verdict.objections.size(), 2u);  // none for the left arm, which another trial shows
   EXPECT_EQ(verdict.objections[0].find("chain right_arm is not calibrated"), 0u);
   EXPECT_NE(verdict.objections[0].find("right_arm_trial: its clock"), std::string::npos);
   EXPECT_TRUE(verdict.remarks.empty());
@@ -102,12 +102,12 @@ TEST_F(CoverageOfChains, StandingOnALegWhoseTrialsAreRefusedIsNotKnown) {
             "left_leg_trial: no trial for calibration that can be used shows it (trial "
             "left_leg_trial: its clock cannot be told; trial right_leg_trial: its clock cannot be "
             "told)");
-  measured.trials.erase(measured.trials.begin());  // declared as standing on both feet
+  measured.trials.erase(measured.trials.begin());  // the trial that remains stood on both feet
   EXPECT_TRUE(UnknownStance(project_, measured).empty());
   measured.validation = Shown("right_leg");
   measured.validation.trials[0].support = {left};
   EXPECT_EQ(UnknownStance(project_, measured).size(), 1u);
-  measured.calibration.trials[0].support = {left};  // recorded once more
+  measured.calibration.trials[0].support = {left};  // this trial can be used
   EXPECT_TRUE(UnknownStance(project_, measured).empty());
   measured.calibration = {};
   Project rigid = project_;
@@ -131,7 +131,7 @@ TEST_F(CoverageOfChains, WhatIsNotJudgedIsSaidWhereOthersAre) {
   EXPECT_NE(verdict.remarks[0].find("left_arm"), std::string::npos);
 }
 
-// The hand's markers were lost: what they alone show is told.
+// Markers of the hand were lost. The joints that only they show are named.
 TEST_F(CoverageOfChains, JointsBeyondAllSeenMarkersAreNamed) {
   Project project = project_;
   Marker upper = project.markers.front();

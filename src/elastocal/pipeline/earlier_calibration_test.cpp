@@ -19,7 +19,7 @@ JointCheck Moved(int moved, int joints) {
   return check;
 }
 
-// Nobody mends most joints of a robot at once: the calibration is that of another one.
+// Nobody repairs most joints of a robot at once, so the calibration must be that of another robot.
 TEST(EarlierCalibration, MostJointsThatMovedMayBeAnotherRobot) {
   const std::vector<std::string> texts = DescribeForgotten(Moved(16, 18), "calA");
   ASSERT_EQ(texts.size(), 17U);

@@ -19,7 +19,7 @@
 namespace elastocal {
 namespace {
 
-/// One trial of a virtual robot with gaps, written in every format.
+/// A trial of a virtual robot with gaps, which is written in every format.
 class ForeignRecordingsTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -28,7 +28,7 @@ class ForeignRecordingsTest : public testing::Test {
     played_.markers.positions.block(100, 0, 40, 3).setConstant(std::nan(""));
     WriteQtmTsv(folder_.path() / "a.tsv", played_.markers);
     WriteJointLog(folder_.path() / "a.csv", played_.log);
-    // What was rounded to micrometres is what every format holds.
+    // Rounded to micrometres, the positions are the same in every format.
     played_.markers = ReadQtmTsv(folder_.path() / "a.tsv");
   }
 
@@ -48,7 +48,7 @@ class ForeignRecordingsTest : public testing::Test {
     EXPECT_EQ(a.gravity, b.gravity);
     ASSERT_EQ(a.posture_count(), 8);
     ASSERT_EQ(b.posture_count(), 8);
-    // Other markers by nanometres are another lag by microseconds.
+    // Markers that differ by nanometres change the lag by microseconds.
     EXPECT_LE((a.q - b.q).cwiseAbs().maxCoeff(), 10.0 * tolerance);
     ASSERT_EQ(a.markers.size(), b.markers.size());
     for (Eigen::Index i = 0; i < a.markers.size(); ++i) {
@@ -63,7 +63,7 @@ class ForeignRecordingsTest : public testing::Test {
   ScriptedTrial played_;
 };
 
-// To the bit, so that whatever is computed from it is the same as well.
+// The samples have the same bits, so that all that is computed from them is the same as well.
 TEST_F(ForeignRecordingsTest, TextFormatsGiveTheSameSamples) {
   folder_.Write("a.vicon", ViconText(played_.markers));
   folder_.Write("a.trc", TrcText(played_.markers));
@@ -74,7 +74,7 @@ TEST_F(ForeignRecordingsTest, TextFormatsGiveTheSameSamples) {
   }
 }
 
-// Floats of 32 bits: 60 nm at a metre.
+// Floats of 32 bits round to 60 nm at a metre.
 TEST_F(ForeignRecordingsTest, C3dGivesTheSameSamples) {
   folder_.Write("a.c3d", C3dWriter(played_.markers, {.processor = 85, .analog = 6}).Write());
   ExpectSame(Read("a.c3d", "a.csv", ""), 2e-7);
@@ -111,7 +111,7 @@ TEST_F(ForeignRecordingsTest, WhatTheFileDoesNotSayIsAskedFor) {
   ExpectSame(Read("a.c3d", "a.csv", "", ", markers_unit: mm"), 2e-7);
   ExpectInputError([&] { Read("a.c3d", "a.csv", "", ", markers_unit: furlong"); },
                    {"experiment.yaml", "furlong", "mm, cm"});
-  // The positions of a Qualisys TSV are in mm, whatever it says.
+  // Positions in a Qualisys TSV are always in mm.
   ExpectInputError([&] { Read("a.tsv", "a.csv", "", ", markers_unit: m"); },
                    {"a.tsv", "states the unit 'mm', not 'm'"});
   ExpectInputError([&] { Read("a.csv.npz", "a.csv"); }, {"a.csv.npz"});
@@ -127,7 +127,7 @@ TEST_F(ForeignRecordingsTest, WhatTheFileDoesNotSayIsAskedFor) {
   ExpectInputError([&] { Read("b.npz", "a.csv"); }, {"b.npz", "no markers"});
 }
 
-// Poses of rigid bodies and joint states in one bag, on the clock that counts from 1970.
+// One bag holds poses of rigid bodies and joint states, with times that count from 1970.
 TEST_F(ForeignRecordingsTest, OneBagHoldsBoth) {
   std::string text = ReadFile(SourceFile("tests/robots/mini_humanoid_project.yaml"));
   const std::string points = "positions_mm: [[0, 0, 0], [100, 0, 0], [0, 100, 0], [0, 0, 100]]}";
@@ -153,7 +153,7 @@ TEST_F(ForeignRecordingsTest, OneBagHoldsBoth) {
   folder_.Write("b.mcap", McapBytes(stamped, &played.markers, kStart - 0.75, true));
   const Measurements poses = Read("a.mcap", "a.mcap");
   const Measurements transforms = Read("b.mcap", "b.mcap", "up: z\n", ", tf_frame: world");
-  EXPECT_EQ(transforms.calibration.q, poses.calibration.q);  // every bit
+  EXPECT_EQ(transforms.calibration.q, poses.calibration.q);  // the same bits
   ExpectInputError([&] { Read("b.mcap", "b.mcap", "up: z\n", ", tf_frame: word"); },
                    {"b.mcap", "no frame 'word'", "did you mean 'world'"});
 }

@@ -36,7 +36,7 @@ TEST(KnownSoles, AreThoseOfAnEarlierCalibrationWhereNoTrialTellsThem) {
   const std::vector<SoleSpring> soles = KnownSoles(project, result, nothing, file);
   EXPECT_EQ(soles[0].compliance, 8e-7);
   EXPECT_TRUE(soles[0].told());
-  EXPECT_TRUE(std::isinf(soles[1].sd));  // the earlier one did not know it either
+  EXPECT_TRUE(std::isinf(soles[1].sd));  // the earlier calibration did not know it either
 }
 
 }  // namespace

@@ -62,7 +62,8 @@ TEST(ProjectWarnings, NameWhatCostsSomething) {
 }
 
 TEST(ProjectWarnings, NameMarkersInsideOtherLinks) {
-  // The hand's origin is 600 mm above that of the base, and 300 mm above that of its neighbour.
+  // The hand's origin is 600 mm above the origin of the base, and 300 mm above that of the next
+  // body.
   const std::string hand =
       "collision: {spheres: [{name: palm, link: hand, centre_mm: [0, 0, 0], radius_mm: 100}]}\n";
   const auto warned = [&](const std::string& third, const std::string& low) {
@@ -76,7 +77,8 @@ TEST(ProjectWarnings, NameMarkersInsideOtherLinks) {
   EXPECT_FALSE(Says(warned("[0, 30, 300]", "[0, 0, 0]"), "'UP_3'"));   // neighbours overlap
 }
 
-// The forearms' clusters of the embedded humanoid have sides of 57.7 and 57.8 mm; all else is fine.
+// The forearm clusters of the embedded humanoid have sides of 57.7 and 57.8 mm. There is nothing
+// else to report.
 TEST(ProjectWarnings, AllThatIsSaidOfTheEmbeddedHumanoidIsTrue) {
   const auto warnings = ProjectWarnings(ReadProject(SourceFile("models/talos/project.yaml")));
   ASSERT_EQ(warnings.size(), 2U);

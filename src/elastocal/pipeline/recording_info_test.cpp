@@ -60,7 +60,7 @@ TEST(RecordingInfoTest, ShowsTheColumnsOfOtherTables) {
   ExpectInputError([&] { DescribeRecording(log, {}, 8); }, {"no row below the header"});
 }
 
-// Twenty touches with their times are no log; a log in ms is one where somebody says so.
+// Twenty touches with times are no log. A log in ms is accepted if the user states the unit.
 TEST(RecordingInfoTest, RowsThatAreSecondsApartAreNoLogUnlessAUnitIsGiven) {
   const ScratchFolder folder;
   std::string text = "t,hip\n";
@@ -101,13 +101,13 @@ TEST(RecordingInfoTest, KnowsAPostureTableByItsColumns) {
   EXPECT_EQ(json["postures"]["joints"].dump(), R"(["hip","knee","C_x"])");
   ExpectInputError([&] { ConvertRecording(file, {}, RecordingPart::kOnlyOne, ""); },
                    {"posture table", "calibrate"});
-  // Joints may have such names in a log; its rows follow each other quickly.
+  // A log may have joints with such names. Its rows follow each other quickly.
   const std::string log =
       folder.Write("log", "t,hip_x,hip_y,hip_z\n0,0,0,0\n0.01,0,0,0\n0.02,0,0,0\n");
   EXPECT_EQ(DescribeRecording(log, {}, 8).file.joints->names.size(), 3u);
 }
 
-// Whatever points up, the converted file has it along z, and is turned and not mirrored.
+// The converted file has z up, whatever pointed up before. It is turned and not mirrored.
 TEST(RecordingInfoTest, ConvertsWithZUp) {
   const ScratchFolder folder;
   MarkerTrajectories axes{"made", {"X", "Y", "Z"}, 10.0, Eigen::MatrixXd(1, 9)};
@@ -134,16 +134,16 @@ TEST(RecordingInfoTest, ConvertsOnePartOfABag) {
   ExpectInputError([&] { ConvertRecording(bag, {}, RecordingPart::kOnlyOne, "z"); }, {"--part"});
   const ConvertedRecording joints = ConvertRecording(bag, {}, RecordingPart::kJoints, "");
   EXPECT_EQ(joints.text.substr(0, joints.text.find('\n')), "t,elbow,wrist");
-  EXPECT_EQ(joints.warnings.size(), 1u);  // one message has no efforts
+  EXPECT_EQ(joints.warnings.size(), 1u);  // one message lacks efforts
   const ConvertedRecording markers = ConvertRecording(bag, {}, RecordingPart::kMarkers, "z");
-  ASSERT_EQ(markers.warnings.size(), 1u);  // that the clock in common is lost
+  ASSERT_EQ(markers.warnings.size(), 1u);  // the clock is no longer common to both
   EXPECT_NE(markers.warnings[0].find("expected_lag_s: -1.7e+09"), std::string::npos)
       << markers.warnings[0];
   const MarkerTrajectories body = ParseQtmTsv(markers.text, "converted");
   EXPECT_EQ(body.frame_count(), 20);
   EXPECT_TRUE(std::isnan(body.positions(7, 0)));
   EXPECT_NEAR(body.positions(3, 0), 1.03, 1e-9);
-  // What a file has neither of is said of both.
+  // If a file has neither part, the message says so of both.
   const ScratchFolder folder;
   JointLog log;
   log.names = {"elbow"};
@@ -154,7 +154,7 @@ TEST(RecordingInfoTest, ConvertsOnePartOfABag) {
       {"no poses", "no joint states in the topic '/no'"});
 }
 
-// As PlotJuggler exports two topics, each of which has the states of the same joint.
+// PlotJuggler exports two topics like this if both have states of the same joint.
 TEST(RecordingInfoTest, NamesTheColumnsOfTwoTopicsWithOneJoint) {
   const ScratchFolder folder;
   const std::string log = folder.Write(

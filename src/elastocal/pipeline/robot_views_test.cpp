@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// For its lifetime a user who may read what is open to everybody: root may read all.
+/// Makes the process a common user while it lives, who can read only what everybody can; root can
+/// read all files.
 class CommonUser {
  public:
   CommonUser() : was_root_(geteuid() == 0 && seteuid(65534) == 0) {}

@@ -20,7 +20,7 @@
 namespace elastocal {
 namespace {
 
-/// TALOS that stands for two seconds.
+/// TALOS standing for two seconds.
 JointMotion RestOnSoles(const Project& project) {
   JointMotion plan;
   plan.source = "plan";
@@ -32,8 +32,8 @@ JointMotion RestOnSoles(const Project& project) {
   return plan;
 }
 
-// Corrected commands take the parts of the calibrated robot to where the plan has them. The nominal
-// robot with these commands would have its feet by centimetres elsewhere, which nobody plays.
+// Corrected commands bring the parts of the calibrated robot to their planned places. With these
+// commands the nominal robot's feet would be centimetres off, but no such robot exists.
 TEST(CompensateMotion, ClearancesAreThoseOfTheCalibratedRobot) {
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   const std::unique_ptr<StandingRobot> robot = StandProjectRobot(project, {});
@@ -52,7 +52,7 @@ TEST(CompensateMotion, ClearancesAreThoseOfTheCalibratedRobot) {
   EXPECT_GT(naive, 16e-3);
 }
 
-// A calibrated trunk that sits elsewhere moves the weight, also where hands and feet are as
+// A calibrated trunk that is displaced moves the centre of mass, even if hands and feet are as
 // planned.
 TEST(CompensateMotion, BalanceIsThatOfTheCalibratedRobot) {
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
@@ -77,13 +77,13 @@ TEST(CompensateMotion, BalanceIsThatOfTheCalibratedRobot) {
   EXPECT_NEAR(margin(0.02 / of_trunk), -0.01, 1e-4);
 }
 
-/// TALOS with drawn errors, and a plan of its posture of rest.
+/// TALOS with random errors, and a plan that stays in its posture of rest.
 class AtRest {
  public:
   CompensatedMotion Compensate(const CompensateMotionOptions& options = {}) const {
     return CompensateMotion(project_, model_, plan_, options);
   }
-  /// A joint cannot leave its planned position.
+  /// Holds a joint at its planned position, by its limits.
   void Hold(const char* joint) {
     const Eigen::Index c =
         project_.tree.joints[static_cast<std::size_t>(FindJoint(project_.tree, joint))].coordinate;
@@ -114,8 +114,8 @@ TEST(CompensateMotion, ARefusalNamesTheJointThatStopsAtItsLimit) {
   EXPECT_NE(result.broken[0].find("plan the motion further from this limit"), std::string::npos);
 }
 
-// A hand that is mounted eleven degrees off, on an arm of four joints, which brings it to its
-// place.
+// A hand is mounted eleven degrees off on an arm of four joints, which can only correct its
+// position.
 TEST(CompensateMotion, AHandInItsPlaceIsRefusedForItsAttitude) {
   const Project project = ReadProject(SourceFile("tests/robots/mini_humanoid_project.yaml"));
   RuntimeModel model =
@@ -140,7 +140,8 @@ TEST(CompensateMotion, AHandInItsPlaceIsRefusedForItsAttitude) {
   EXPECT_TRUE(most_turned(10.0).broken.empty());
 }
 
-// Less than what is asked is a warning that names the limb, and the motion is played.
+// If limits allow less than the wanted correction, a warning names the limb, and the motion is
+// still played.
 TEST(CompensateMotion, WhatLimitsLeaveIsSaidAndNotRefused) {
   AtRest talos;
   talos.Hold("leg_left_4_joint");
@@ -156,8 +157,8 @@ TEST(CompensateMotion, WhatLimitsLeaveIsSaidAndNotRefused) {
   }
 }
 
-// Where a nearly stretched arm has the trunk move, the head makes up for it: at most as fast as its
-// joints are.
+// A nearly stretched arm makes the trunk move, and the head compensates for that, at most at the
+// speed limit of its joints.
 TEST(CompensateMotion, CorrectionsKeepTheSpeedOfTheJoints) {
   Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   const RuntimeModel model =
@@ -185,7 +186,7 @@ TEST(CompensateMotion, CorrectionsKeepTheSpeedOfTheJoints) {
   EXPECT_LE(largest_speed(), limit);
 }
 
-// Motions of arms often lack the fingers, or the legs.
+// Motions of arms often lack the fingers or the legs.
 TEST(CompensateMotion, JointsThatAMotionLeavesOpenAreAtRest) {
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   const RuntimeModel model =
@@ -201,7 +202,7 @@ TEST(CompensateMotion, JointsThatAMotionLeavesOpenAreAtRest) {
   EXPECT_EQ(result.planned.motion.q, expected.planned.motion.q);
 }
 
-// Nothing would be corrected, and all of it said to be where the plan has it.
+// Nothing would be corrected, and everything would be reported to be where the plan has it.
 TEST(CompensateMotion, WithoutChainsNothingSaysWhatIsToBeWhere) {
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   RuntimeModel model =

@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-/// At rest for a while, with the columns of one joint alone.
+/// A motion that is at rest for a while.
 JointMotion OneJoint(const Project& project) {
   JointMotion motion;
   motion.source = "motion.csv";
@@ -21,7 +21,7 @@ JointMotion OneJoint(const Project& project) {
   return motion;
 }
 
-// All feet stand where a motion does not say which.
+// All feet stand if a motion does not say which do.
 TEST(ExecuteMotion, AMotionMayLeaveItsSupportOpen) {
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   const JointMotion motion = OneJoint(project);
@@ -35,7 +35,8 @@ TEST(ExecuteMotion, AMotionMayLeaveItsSupportOpen) {
   EXPECT_TRUE(executions[0].run.stood);
 }
 
-// The torques of the plan bend a leg that swings fast; its weight alone is another command.
+// The planned torques of a swinging leg bend it more than its weight alone, and so give another
+// command.
 TEST(ExecuteMotion, AControllerKnowsTheTorquesOfItsPlan) {
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   JointMotion motion = OneJoint(project);

@@ -11,12 +11,12 @@
 namespace elastocal {
 namespace {
 
-/// TALOS at rest on its left foot, of which one parameter is not known.
+/// TALOS at rest on its left foot, with one uncertain parameter.
 class ExpectedErrors : public testing::Test {
  protected:
   std::map<std::string, ExpectedAtLimb> Expect(const std::string& parameter, double sd) const {
     CalibrationEstimate estimate;
-    estimate.covariance_names = {"marker.LHAND_1.x", parameter};  // that of no joint does not count
+    estimate.covariance_names = {"marker.LHAND_1.x", parameter};  // a marker's is ignored
     estimate.covariance = Eigen::Vector2d(1.0, sd * sd).asDiagonal();
     JointMotion motion;
     motion.q = project_.motion.rest.transpose();
@@ -34,7 +34,7 @@ class ExpectedErrors : public testing::Test {
 
 TEST_F(ExpectedErrors, OfAStandingFootAreThoseOfAllThatItCarries) {
   const auto expected = Expect("leg_left_6_joint.r", 2e-3);
-  EXPECT_EQ(expected.count("leg_left"), 0u);  // all is seen from there
+  EXPECT_EQ(expected.count("leg_left"), 0u);  // all errors are relative to this foot
   for (const char* limb : {"head_trunk", "arm_left", "arm_right", "leg_right", "base_link"}) {
     ASSERT_EQ(expected.count(limb), 1u) << limb;
     EXPECT_NEAR(expected.at(limb).position, 2e-3, 1e-8) << limb;
@@ -52,7 +52,7 @@ TEST_F(ExpectedErrors, OfTheZeroOfAWristAreThoseOfItsHand) {
   }
 }
 
-// A robot with soles can be held while its arms move.
+// A robot with soles may be held while its arms move.
 TEST_F(ExpectedErrors, AreSeenFromTheRootLinkWhereNoFootStands) {
   JointMotion motion;
   motion.q = project_.motion.rest.transpose().replicate(2, 1);

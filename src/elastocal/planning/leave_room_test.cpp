@@ -23,14 +23,14 @@ TEST(LeaveRoom, MovesTheLimitsOfTurningJointsAndThoseOfPostures) {
   EXPECT_NEAR(after.lower - before.lower, 3.0 * kOneDeg, 1e-12);
   EXPECT_NEAR(before.upper - after.upper, 3.0 * kOneDeg, 1e-12);
   const int c = project.tree.joints[joint].coordinate;
-  const double inside = 0.02 * (before.upper - before.lower);  // as far as postures stay from them
+  const double inside = 0.02 * (before.upper - before.lower);  // postures stay away this far
   EXPECT_NEAR(project.motion.lower[c] - before.lower, inside, 1e-12);
   EXPECT_NEAR(narrow.motion.lower[c] - after.lower, inside, 1e-12);
   EXPECT_NEAR(after.upper - narrow.motion.upper[c], inside, 1e-12);
   EXPECT_EQ(LeaveRoom(project, 0.0).tree.joints[joint].limits.lower, before.lower);
 }
 
-// Six degrees left free and 0.57 of margin are 6.57 to the joint's own limit.
+// Six free degrees and a margin of 0.57 degrees make 6.57 degrees to the joint's own limit.
 TEST(LeaveRoom, APlanCountsToTheJointsOwnLimits) {
   const Project own = ReadProject(SourceFile("models/talos/project.yaml"));
   const Project narrow = LeaveRoom(own, 6.0 * kOneDeg);
@@ -49,7 +49,7 @@ TEST(LeaveRoom, APlanCountsToTheJointsOwnLimits) {
   EXPECT_EQ(plan.limits[1].worst, "6.60");
 }
 
-// A joint of 20 degrees keeps 16 of them; one that slides keeps all.
+// A joint with a range of 20 degrees keeps 16 of them. A sliding joint keeps its whole range.
 TEST(LeaveRoom, LeavesNineTenthsOfAShortRange) {
   Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
   for (Joint& joint : project.tree.joints) {

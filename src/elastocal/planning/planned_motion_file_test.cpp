@@ -34,11 +34,11 @@ TEST(PlannedMotionFile, IsReadAsItWasWritten) {
   const JointMotion read = ReadMotion(stream, "motion.csv", project);
   EXPECT_EQ(read.time_s, planned.motion.time_s);
   EXPECT_EQ(read.support, planned.motion.support);
-  // Twelve digits are written.
+  // Positions are written with twelve digits.
   EXPECT_LT((read.q - planned.motion.q).cwiseAbs().maxCoeff(), 1e-11);
 }
 
-// A wheel or finger that is on no chain and stands still is no business of the controller's.
+// The controller does not command a wheel or finger that is on no chain and stands still.
 TEST(JointTrajectory, HasTheJointsOfChainsAndThoseThatMove) {
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
   const RobotTree& tree = project.tree;
@@ -54,7 +54,7 @@ TEST(JointTrajectory, HasTheJointsOfChainsAndThoseThatMove) {
   Chain chain = project.chains.front();
   chain.tip_link = FindLink(tree, "head_1_link");
   const std::vector<int> coordinates = CommandedCoordinates(tree, {chain}, motion);
-  EXPECT_EQ(coordinates.size(), 4u);  // two of the torso, one of the head, one that moves
+  EXPECT_EQ(coordinates.size(), 4u);  // two of the torso, one of the head, and one that moves
   for (const int c : {torso, head, leg}) {
     EXPECT_NE(std::ranges::find(coordinates, c), coordinates.end()) << c;
   }

@@ -39,7 +39,7 @@ std::string Inflated(const std::string& deflated) {
   return bytes;
 }
 
-/// A biped in a planned posture, somewhere in the world.
+/// A biped in a planned posture, at some place in the world.
 struct Played {
   Biped biped = MakeBiped();
   int left = FindLink(biped.tree, "left_sole"), right = FindLink(biped.tree, "right_sole");
@@ -73,7 +73,7 @@ TEST(Playback, ARobotThatDoesWhatIsPlannedHasNoDisplacementWhereverItStands) {
     ASSERT_EQ(displacement.cols(), static_cast<Eigen::Index>(playback.links.size()));
     EXPECT_LT(displacement.cwiseAbs().maxCoeff(), 1e-12);
   }
-  // Another foot stands first: the root link does not jump.
+  // When another foot begins to stand, the root link does not jump.
   EXPECT_TRUE(playback.T_plan_root[1].isApprox(playback.T_plan_root[0], 1e-12));
   const PlaybackTip& swinging = playback.tips[1];
   EXPECT_TRUE(std::isnan(swinging.distance_m[0])) << "it stands";
@@ -99,7 +99,7 @@ TEST(Playback, DisplacementAndDistanceAreThoseOfTheLink) {
   PlaybackRecorder recorder = played.Recorder();
   std::vector<Transform> T_world_link = played.InWorld();
   recorder.Add(0.0, played.q, played.T_root_link, {played.left}, T_world_link);
-  // The trunk is 3, 4, 12 mm off and turned by 20 mrad about its own z axis.
+  // The trunk is displaced by 3, 4 and 12 mm and turned by 20 mrad about its own z axis.
   Transform& trunk = T_world_link[static_cast<std::size_t>(played.trunk)];
   trunk.pretranslate(Eigen::Vector3d(3e-3, 4e-3, 12e-3));
   trunk.rotate(Eigen::AngleAxisd(20e-3, Eigen::Vector3d::UnitZ()));
@@ -126,7 +126,8 @@ TEST(Playback, JsonHasDifferencesInTenthsAndNullForAStandingFoot) {
   const Eigen::VectorXd q(0);
   const std::vector<Transform> still = {Transform::Identity()};
   recorder.Add(0.2, q, still, {0}, still);
-  // 12.34 mm, and 5 m and 3 mrad the other way: a step of a byte, and more than one.
+  // Moves by 12.34 mm, by 5 m and by 3 mrad the other way. The first takes one byte, the second
+  // more.
   Transform moved(Eigen::Translation3d(12.34e-3, -5.0, 0.0));
   moved.linear() = RotationFromVector({0.0, 0.0, -3e-3});
   recorder.Add(0.4, q, still, {0}, {moved});
@@ -141,7 +142,7 @@ TEST(Playback, JsonHasDifferencesInTenthsAndNullForAStandingFoot) {
   EXPECT_EQ(robot["pictures"], 3);
   EXPECT_EQ(robot["tips"][0]["place"], "foot");
   EXPECT_EQ(robot["tips"][0]["distance_mm"], Json::parse("[null, null, null]"));
-  // 123, -50000 (escaped: b0 3c ff ff), 0; 0, 0, -30. Then -124 (-247 from there: escaped), 0, 1.
+  // 123, -50000 (escaped: b0 3c ff ff), 0; 0, 0, -30. Then differences: -124 (-247, escaped), 0, 1.
   const std::string bytes = std::string(6, '\0') +
                             std::string("\x7b\x80\xb0\x3c\xff\xff\x00\x00\x00\xe2", 10) +
                             std::string("\x80\x84\xff\xff\xff\x00\x01\x00\x00\x00", 10);

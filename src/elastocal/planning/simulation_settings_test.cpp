@@ -58,7 +58,7 @@ TEST(SimulationSettings, EachIsGivenOnceAndShowsItsDefault) {
   for (const SimulationSetting& setting : SimulationSettings(options)) {
     EXPECT_TRUE(keys.insert(setting.key).second) << setting.key;
     EXPECT_FALSE(setting.help.empty()) << setting.key;
-    // What it shows is what it takes.
+    // A setting accepts the text that shows it.
     const std::string shown = SettingText(setting);
     if (!shown.empty()) ApplySetting(setting, shown, "");
     EXPECT_EQ(SettingText(setting), shown) << setting.key;

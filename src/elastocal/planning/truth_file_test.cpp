@@ -15,7 +15,7 @@
 namespace elastocal {
 namespace {
 
-/// The small humanoid's arm, one trial of two postures.
+/// The arm of the small humanoid in one trial of two postures.
 class SimulatedFolder : public testing::Test {
  protected:
   SimulatedFolder() {
@@ -68,7 +68,7 @@ TEST_F(SimulatedFolder, TruthTellsWhatWasDrawn) {
   EXPECT_NEAR(joint.Get("offset_deg").Number() * M_PI / 180.0, experiment.robot.offset[knee],
               1e-15);
   EXPECT_EQ(joint.Get("compliance_rad_per_nm").Number(), experiment.robot.compliance[knee]);
-  // The placement error, put back on the description, is the true placement.
+  // The description with the placement error applied must be the true placement.
   const auto vector = [](const YamlValue& list) {
     const auto items = list.Items();
     return Eigen::Vector3d(items[0].Number(), items[1].Number(), items[2].Number());

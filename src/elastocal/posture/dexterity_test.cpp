@@ -13,7 +13,7 @@
 namespace elastocal {
 namespace {
 
-// Joints that turn and slide in any relation, and one that follows another.
+// Robots with joints that turn and slide in any relation, and one joint that follows another.
 TEST(Dexterity, DerivativeEqualsDifferences) {
   constexpr double kStep = 1e-6;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -49,7 +49,7 @@ TEST(Dexterity, DerivativeEqualsDifferences) {
   }
 }
 
-// A straight knee leaves five directions, and a bent one the more of the sixth the more it is bent.
+// A straight knee leaves five directions. The more it bends, the better is the sixth.
 TEST(Dexterity, AStretchedLegHasNone) {
   const RobotTree tree = TalosLeg();
   const int foot = static_cast<int>(tree.links.size()) - 1;

@@ -35,10 +35,10 @@ TEST(FeasibleSet, NamesTheLimitThatIsBrokenMost) {
   FeasibleSet& set = leg.problem.feasible;
   Eigen::VectorXd x = leg.motion.rest;
   EXPECT_EQ(WorstViolation(set, x).amount, 0.0);
-  x[0] = 1.5;  // the cone's cosine is 0.43 short
+  x[0] = 1.5;  // the cosine of the cone is 0.43 too small
   EXPECT_EQ(WorstViolation(set, x).what, "limit of hip_yaw");
   EXPECT_NEAR(WorstViolation(set, x).amount, 0.5, 1e-12);
-  x = Eigen::Vector4d(0.0, 0.0, 0.0, 0.0);  // straight: foot at -0.9, of radius 0.07
+  x = Eigen::Vector4d(0.0, 0.0, 0.0, 0.0);  // straight: the foot is at -0.9, its radius 0.07
   EXPECT_EQ(WorstViolation(set, x).what, "height of FOOT above the floor");
   EXPECT_NEAR(WorstViolation(set, x).amount, 0.07, 1e-12);
 }
@@ -49,7 +49,8 @@ TEST(FeasibleSet, OrientationIsTheCosineOfTheTurn) {
   Eigen::VectorXd values;
   Eigen::MatrixXd jacobian;
   EvaluateConstraints(set, Eigen::Vector4d(0.2, 0.0, -0.5, 1.0), values, jacobian);
-  // About z before the pitch at rest: a turn by the yaw alone. Rows: box (3), then the cone.
+  // The axis turns about z before the pitch at rest, so only the yaw turns it. The first rows are
+  // the box (3), then follows the cone.
   EXPECT_NEAR(values[3], std::cos(0.2), 1e-12);
 }
 
@@ -62,8 +63,8 @@ TEST(FeasibleSampler, DrawsFeasiblePosturesAndCountsThem) {
     EXPECT_EQ(WorstViolation(leg.problem.feasible, *x).amount, 0.0);
   }
   EXPECT_EQ(sampler.count().found, 200);
-  EXPECT_GT(sampler.count().Yield(), 0.3);  // else most of the workspace could not be reached
-  // Repair adds postures that placing the end alone did not give.
+  EXPECT_GT(sampler.count().Yield(), 0.3);  // otherwise most of the workspace would be out of reach
+  // Repair adds postures that are not feasible after the end is placed.
   EXPECT_LT(sampler.count().feasible_at_once, sampler.count().found);
 }
 
@@ -73,7 +74,7 @@ TEST(FeasibleSampler, SameSeedSamePostures) {
   for (int i = 0; i < 20; ++i) EXPECT_EQ(*first.Draw(), *second.Draw());
 }
 
-// Spheres beside the leg that the knee cannot pass: what is beyond them keeps all limits.
+// The knee cannot pass spheres beside the leg. The postures beyond them satisfy all limits.
 TEST(FeasibleSampler, DrawsOnlyWhatCanBeReached) {
   constexpr double kWall = 0.5;  // rad of hip_roll
   const RobotTree tree = MakeLegRobot();

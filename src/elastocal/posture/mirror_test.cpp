@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-/// Two arms of three joints, the right one with its axes turned round where `flip` says so.
+/// Two arms of three joints. `flip` reverses the axes of the right one.
 RobotTree TwoArms(bool flip) {
   RobotTree tree = MakeRoot();
   int left = AddJoint(tree, "l1", 0, Offset(0, 0.2, 0.3), {0, 0, 1});

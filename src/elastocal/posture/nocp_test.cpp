@@ -16,7 +16,7 @@ PostureSet RandomSet(PostureProblem& problem, int size, std::uint64_t seed) {
   return RandomDesign(problem, size, seed).set;
 }
 
-/// Enough for the small leg of these tests.
+/// Options that suffice for the small leg of these tests.
 NocpOptions Quick(int max_postures = 12) {
   NocpOptions options;
   options.plateau.max_postures = max_postures;
@@ -64,7 +64,7 @@ TEST(PartialOptim, EndsWhereNoSmallStepImproves) {
 TEST(FindWorst, BothReadingsOfAlgorithm1) {
   LegProblem leg;
   PostureSet set = RandomSet(leg.problem, 6, 3);
-  set.Add(leg.problem, set.posture(0));  // the same posture twice: one of them is worth least
+  set.Add(leg.problem, set.posture(0));  // a repeated posture: one of the two is worth least
   const int least = FindWorst(set, Criterion::kO1, WorstIndex::kLeastLoss);
   const int most = FindWorst(set, Criterion::kO1, WorstIndex::kAsPrinted);
   const Eigen::VectorXd without = IndicesWithoutEach(set, Criterion::kO1);
@@ -149,7 +149,7 @@ TEST(FindPlateau, TakesTwoStillAdditionsInTurn) {
   EXPECT_EQ(FindPlateau({0.5, 0.5}, 1e-3), -1);
   EXPECT_EQ(FindPlateau({0.5, 0.6, 0.6}, 1e-3), -1);
   EXPECT_EQ(FindPlateau({0.5, 0.6, 0.6003, 0.5998}, 1e-3), 1);
-  EXPECT_EQ(FindPlateau({0.5, 0.6, 0.59, 0.61, 0.6, 0.61}, 1e-3), 3);  // creeping up is no rest
+  EXPECT_EQ(FindPlateau({0.5, 0.6, 0.59, 0.61, 0.6, 0.61}, 1e-3), 3);  // slow growth is no plateau
   EXPECT_EQ(FindPlateau({0.0, 0.0, 0.0}, 1e-3), -1);                   // no information yet
 }
 
@@ -171,7 +171,7 @@ TEST(AssessPosturesStudy, FindsTheRepeatedPostureAndAnAddition) {
   set.Add(leg.problem, leg.motion.rest);
   const Assessment assessment =
       AssessPostures(leg.problem, set, {.certificate = QuickCertificate()});
-  EXPECT_EQ(assessment.adds_least, size);  // the posture at rest, of no design
+  EXPECT_EQ(assessment.adds_least, size);  // the posture of rest, which no design chose
   EXPECT_GT(assessment.o1_with_addition, 0.0);
   EXPECT_LE(WorstViolation(leg.problem.feasible, assessment.best_addition).amount, kFeasible);
   EXPECT_GT(assessment.efficiency, 0.9);

@@ -55,7 +55,7 @@ TEST(PostureRegressor, GradientEqualsDifferencesOnRandomRobots) {
     const MovingChain chain(model.tree,
                             ChainCoordinates(tree, 0, static_cast<int>(tree.links.size()) - 1),
                             RandomPosture(tree, random));
-    // Some hundred terms of order one with differences good to 1e-9 each.
+    // Some hundred terms of order one, whose differences have errors of 1e-9 each.
     ExpectGradient(model, chain, random, 1e-6);
   }
 }
@@ -66,7 +66,7 @@ TEST(PostureRegressor, GradientOfCompliancesEqualsDifferences) {
   elasticity.bending = {1, 2, 3};
   LegProblem leg(Criterion::kO1, elasticity);
   Random random(5);
-  // Loads of up to 100 N.m multiply the columns.
+  // The columns are multiplied by loads of up to 100 N.m.
   ExpectGradient(leg.model, leg.problem.feasible.chain, random, 1e-4);
 }
 
@@ -80,14 +80,14 @@ TEST(PostureRegressor, GradientWithAFreeRootEqualsDifferences) {
   Eigen::VectorXd shown = Eigen::VectorXd::Ones(3 * leg.model.marker_count());
   shown.segment<3>(3).setZero();
   ExpectGradient(leg.model, chain, random, 1e-4, RootPose::kFree, shown);
-  shown.setZero();  // two are seen, which do not show the turn about their line
+  shown.setZero();  // two markers do not show the turn about their line
   shown.head<3>().setOnes();
   shown.tail<3>().setOnes();
   ExpectGradient(leg.model, chain, random, 1e-4, RootPose::kFree, shown);
 }
 
-// With a free root a posture tells what the estimate knows once six numbers of it are spent on
-// where the robot is: the Schur complement of the information of all parameters.
+// With a free root, a posture spends six numbers on the robot's pose. What remains for the
+// parameters is the Schur complement of the information of all unknowns.
 TEST(PostureRegressor, WithAFreeRootTheInformationIsTheSchurComplement) {
   LegProblem leg;
   MovingChain chain = leg.problem.feasible.chain;
@@ -119,7 +119,7 @@ TEST(PostureRegressor, IsTheGeneralizedJacobianUnderGravity) {
   EXPECT_LT((regressor.Evaluate(chain, x) - jacobian.Dense()).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-/// The leg's robot on another leg, of which the chain's motion is seen through the waist.
+/// The leg's robot, which stands on another leg. Its chain is seen relative to the waist.
 struct StandingLegProblem {
   StandingLegProblem() {
     RobotTree tree = MakeLegRobot();
@@ -141,7 +141,7 @@ struct StandingLegProblem {
 TEST(PostureRegressor, GradientOfAStandingLegsCompliancesEqualsDifferences) {
   const StandingLegProblem leg;
   Random random(8);
-  // Weights of 100 N multiply the columns.
+  // The columns are multiplied by weights of 100 N.
   ExpectGradient(leg.model, MovingChain(leg.model.tree, {0, 1, 2, 3}, leg.rest), random, 1e-3);
 }
 
@@ -208,7 +208,7 @@ TEST_P(EachCriterion, WeightGivesTheGradientOfTheIndex) {
       moved.Replace(problem, 2, x + (side == 0 ? -kStep : kStep) * Eigen::VectorXd::Unit(4, i));
       log_index[side] = EvaluateCriterion(GetParam(), moved.information(), moved.size()).log_index;
     }
-    // Smallest eigenvalues are the differences of large ones: six digits.
+    // Smallest eigenvalues are differences of large ones, so six digits remain.
     EXPECT_NEAR(gradient[i], (log_index[1] - log_index[0]) / (2 * kStep), 1e-5);
   }
 }
@@ -253,7 +253,7 @@ TEST(PostureSet, OnePostureDoesNotDetermineAll) {
 TEST(MarkerVisibility, HidesWhatIsBehindASphere) {
   const ErrorModel model = MakeErrorModel(MakeLegRobot(), LegMarkers(MakeLegRobot()));
   MotionSetup motion = LegMotion(model.tree);
-  // Behind the pelvis' sphere, seen from far on the right: only where the line is free.
+  // A sphere of the pelvis hides the markers from a camera far on the right.
   motion.spheres = {{"WALL", 0, {0.0, -1.5, -0.5}, 1.0}};
   motion.cameras = {{0.0, -5.0, -0.5}};
   const ChainSetup setup = [&] {
@@ -265,7 +265,7 @@ TEST(MarkerVisibility, HidesWhatIsBehindASphere) {
   PostureProblem hidden = MakeChainProblem(model, base.kept, motion, setup);
   ASSERT_TRUE(hidden.visible);
   EXPECT_TRUE(EvaluateRegressor(hidden, motion.rest).isZero(0.0));
-  motion.cameras.emplace_back(0.0, 5.0, -0.5);  // from the other side all are seen
+  motion.cameras.emplace_back(0.0, 5.0, -0.5);  // from the other side, all markers are seen
   EXPECT_EQ((EvaluateRegressor(hidden, motion.rest).rowwise().norm().array() > 0.0).count(), 18);
 }
 

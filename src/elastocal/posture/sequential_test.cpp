@@ -9,7 +9,8 @@
 namespace elastocal {
 namespace {
 
-// One parameter with variance p, told with information a; its change has the variance w2.
+// One parameter with variance p, about which the data have information a. Its change has variance
+// w2.
 TEST(Sequential, OneParameterByHand) {
   const double p = 4e-6, a = 5e5, w2 = 9e-6;
   const PriorKnowledge prior{.covariance = Eigen::MatrixXd::Constant(1, 1, p),
@@ -17,13 +18,13 @@ TEST(Sequential, OneParameterByHand) {
   const Eigen::MatrixXd data = Eigen::MatrixXd::Constant(1, 1, a);
   EXPECT_NEAR(ExpectedInformation(prior, data, SequentialAim::kParameters), std::log(1.0 + a * p),
               1e-12);
-  // The change is seen beside the doubt about the parameter: variance 1/a + p.
+  // The uncertainty of the parameter itself hides its change: the variance is 1/a + p.
   EXPECT_NEAR(ExpectedInformation(prior, data, SequentialAim::kChanges),
               std::log(1.0 + w2 / (1.0 / a + p)), 1e-12);
   EXPECT_NEAR(ChangeDeviations(prior, data)[0], std::sqrt(1.0 / a + p), 1e-15);
 }
 
-// What is told of the sum of two parameters alone tells no change of the one that is not known.
+// Data that tell only the sum of two parameters tell no change of the one that is unknown.
 TEST(Sequential, TwoParametersByHand) {
   const double p = 1e-6, unknown = 1.0, a = 1e8;
   PriorKnowledge prior;
@@ -35,7 +36,7 @@ TEST(Sequential, TwoParametersByHand) {
   EXPECT_TRUE(std::isinf(sd[1]));  // it never changes
 }
 
-// Correlated parameters of unlike units, by the formulas with inverses.
+// Correlated parameters in different units, compared with the formulas that use inverses.
 TEST(Sequential, CorrelatedParametersByInverses) {
   const Eigen::Vector3d unit(1e-2, 3.0, 0.2);
   Eigen::Matrix3d correlation, told;

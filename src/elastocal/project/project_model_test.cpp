@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a project says of how its robot moves and bends.
+// How the robot of a project moves and bends.
 #include <cmath>
 #include <set>
 
@@ -16,7 +16,7 @@
 namespace elastocal {
 namespace {
 
-/// A project on the arm of the tests with one marker.
+/// A project with the arm of the tests and one marker.
 Project ParseArm(const std::string& more = "") {
   return ParseProject(
       "robot: {urdf: arm6.urdf}\nmarkers: {single: [{name: M, link: tool, position_mm: [1, 2, "
@@ -36,7 +36,8 @@ TEST(ProjectModel, NarrowsTheRangeOfAJoint) {
   EXPECT_LE(project.motion.rest[elbow], project.motion.upper[elbow]);
 }
 
-// The lift of an HSR: gravity takes 87 of its 100 N, and designed postures use 85 %.
+// The lift of an HSR is such a joint: gravity takes 87 of its 100 N, but designed postures use only
+// 85 %.
 TEST(ProjectModel, ARobotHoldsItsPostureOfRest) {
   const Project usual = ParseArm();
   const int lift = FindJoint(usual.tree, "elbow_joint");
@@ -77,12 +78,12 @@ TEST(ProjectModel, AJointThatCountsTurnsIsMovedAboutItsPositionOfRest) {
   const Project usual = parse("rest_deg: {j: 0}");
   EXPECT_DOUBLE_EQ(usual.motion.lower[0], -M_PI);
   const Project turned = parse("rest_deg: {j: 200}");
-  EXPECT_NEAR(turned.motion.lower[0], 0.0, 1e-4);  // as far as the limit allows
+  EXPECT_NEAR(turned.motion.lower[0], 0.0, 1e-4);  // as far as its limit allows
   EXPECT_NEAR(turned.motion.upper[0], 2.0 * M_PI, 1e-4);
   EXPECT_DOUBLE_EQ(turned.motion.rest[0], 200.0 * M_PI / 180.0);
   ExpectInputError([&] { parse("rest_deg: {j: 200}, range_deg: {j: [10, 20]}"); },
                    {"p.yaml:3: ", "10 to 20"});
-  const Project narrow = parse("range_deg: {j: [190, 270]}");  // chooses the turn too
+  const Project narrow = parse("range_deg: {j: [190, 270]}");  // this range selects the turn too
   EXPECT_DOUBLE_EQ(narrow.motion.lower[0], 190.0 * M_PI / 180.0);
   EXPECT_DOUBLE_EQ(narrow.motion.upper[0], 270.0 * M_PI / 180.0);
 }
@@ -106,7 +107,7 @@ TEST(ProjectModel, JointsOfARecordingBendWhereTheyTwist) {
   EXPECT_EQ(bending("elasticity: {torsion: [elbow_joint]}", held),
             std::set<std::string>{"elbow_joint"});
   EXPECT_TRUE(bending("elasticity: {bending: []}", held).empty());
-  EXPECT_TRUE(bending("", {}).empty());  // of a table the data decide
+  EXPECT_TRUE(bending("", {}).empty());  // for a table, the data decide
   EXPECT_TRUE(bending("elasticity: {torsion: [elbow_joint]}", {}).empty());
 }
 

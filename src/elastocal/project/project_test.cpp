@@ -14,7 +14,8 @@
 namespace elastocal {
 namespace {
 
-/// A small project on the arm of the tests: robot on line 1, markers on line 2, `more` from line 3.
+/// A small project with the arm of the tests: the robot is on line 1, markers on line 2, `more`
+/// from line 3.
 Project Parse(
     const std::string& more = "",
     const std::string& markers = "{single: [{name: M, link: tool, position_mm: [1, 2, 3]}]}") {
@@ -143,7 +144,7 @@ TEST(Project, ReadsCouplings) {
          {"shoulder_joint", "from -1000 to 1000"});
 }
 
-/// A crank in the upper arm of the invented arm, whose rod bends the elbow.
+/// A crank in the upper arm of the invented arm. Its rod bends the elbow.
 std::string ElbowLinkage(const std::string& rod, const std::string& joints = "elbow_joint") {
   return "linkages: [{name: elbow, joints: [" + joints +
          "], rods: [{motor: m, from: upper_arm, to: forearm, axis: [0, 2, 0], centre_mm: [0, -30, "

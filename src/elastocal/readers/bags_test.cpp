@@ -19,14 +19,14 @@ RecordingFile ReadBag(const std::string& bytes, const ReaderOptions& options = {
   return ReadRecordingFile(ByteSource::OfMemory(bytes, "bag"), options);
 }
 
-/// What tests/recordings/make_bags.mjs wrote with other people's libraries.
+/// Checks a bag that tests/recordings/make_bags.mjs wrote with other libraries.
 void ExpectMadeBag(const RecordingFile& file) {
   ASSERT_TRUE(file.joints.has_value()) << file.why_no_joints;
   const JointLog& log = *file.joints;
   EXPECT_EQ(log.names, (std::vector<std::string>{"elbow", "wrist"}));
   ASSERT_EQ(log.sample_count(), 10);
   for (int i = 0; i < 10; ++i) {
-    EXPECT_NEAR(log.time_s[i], 1.7e9 + 0.02 * i, 3e-7);  // what a double holds of such times
+    EXPECT_NEAR(log.time_s[i], 1.7e9 + 0.02 * i, 3e-7);  // precision of such times as double
     EXPECT_EQ(log.positions(i, 0), 0.25 * i);
     EXPECT_EQ(log.positions(i, 1), -1.0 * i);
     EXPECT_TRUE(std::isnan(log.torques(i, 1)));
@@ -42,11 +42,11 @@ void ExpectMadeBag(const RecordingFile& file) {
     EXPECT_EQ(body.positions.row(i).array().isNaN().any(), i == 7);
     if (i == 7) continue;
     const double x = 1.0 + 0.01 * i;
-    Eigen::RowVectorXd expected(12);  // turned about z by a quarter
+    Eigen::RowVectorXd expected(12);  // turned about z by 90 degrees
     expected << x, -2, 0.5, x, -1.9, 0.5, x - 0.1, -2, 0.5, x, -2, 0.6;
     EXPECT_LT((body.positions.row(i) - expected).norm(), 1e-12) << i;
   }
-  EXPECT_EQ(file.notes.size(), 3u);  // one a topic
+  EXPECT_EQ(file.notes.size(), 3u);  // one per topic
 }
 
 TEST(BagsTest, McapOfItsOwnLibrary) {
@@ -75,7 +75,7 @@ TEST(BagsTest, DatabaseOfSqlite) {
   ExpectMadeBag(ReadBag(ReadFile(file)));
 }
 
-/// The same poses as transforms, beside those of a robot, by the same libraries.
+/// The same libraries wrote the same poses as transforms, among the transforms of a robot.
 TEST(BagsTest, TransformsAreThePosesOfBodies) {
   const RecordingFile poses = ReadRecordingFile(SourceFile("tests/recordings/bag_none.mcap"), {});
   for (const char* name : {"tf.mcap", "tf.db3", "tf1.bag"}) {
@@ -117,15 +117,16 @@ TEST(BagsTest, HandMadeBagKeepsEveryBit) {
   EXPECT_FALSE(file.markers.has_value());
 }
 
-/// A bag of several topics, from the records of bags of one.
+/// A bag of two topics, made of the records of two bags of one topic.
 std::string TwoTopics(const JointLog& a, const JointLog& b, bool one_name) {
   std::string first = McapBytes(a), second = McapBytes(b);
   const std::string topic = Bytes().Text("/joint_states").text;
   std::size_t channel = second.find(topic) - 4;
-  second[channel] = 9;  // its number
+  second[channel] = 9;  // the number of the channel
   if (!one_name) second.replace(second.find("/joint_states"), 13, "/hand_statess");
   const std::string message("\5", 1);
-  // From the channel to the end of the data; messages have the channel's number behind their head.
+  // The records from the channel to the end of the data. A message has the channel's number after
+  // its head.
   std::size_t at = channel - 9;
   const std::size_t end = second.size() - 8 - 29 - 13;
   std::string records = second.substr(at, end - at);
@@ -151,11 +152,11 @@ TEST(BagsTest, OneOfSeveralTopicsIsAskedFor) {
       << both.why_no_joints;
   EXPECT_EQ(ReadBag(bag, {.joints_topic = "/hand_statess"}).joints->names, hand.names);
   EXPECT_FALSE(ReadBag(bag, {.joints_topic = "/no"}).joints.has_value());
-  // Two drivers that publish on one topic.
+  // Two drivers publish on the same topic.
   EXPECT_EQ(ReadBag(TwoTopics(log, hand, true)).joints->names.size(), 4u);
 }
 
-/// What a topic of joint states with these messages holds.
+/// The log of a topic of joint states with these messages.
 JointLog TakeTopic(const std::vector<std::string>& messages) {
   RosMessages topic("bag", {});
   topic.AddTopic(1, "/joint_states", "sensor_msgs/msg/JointState", RosEncoding::kCdr);
@@ -163,7 +164,7 @@ JointLog TakeTopic(const std::vector<std::string>& messages) {
   return topic.Take().joints.value();
 }
 
-/// Drivers that list joints as a hash table has them change the order at any time.
+/// Some drivers list joints in the order of a hash table, which may change at any time.
 TEST(BagsTest, JointsMayComeInAnotherOrder) {
   const JointLog log = SomeLog();
   JointLog turned = log;
@@ -181,8 +182,8 @@ TEST(BagsTest, JointsMayComeInAnotherOrder) {
   EXPECT_EQ(read.torques, log.torques);
 }
 
-/// `ros2 bag record --compression-mode message`: each message is a frame of zstd, here of one block
-/// as it is.
+/// `ros2 bag record --compression-mode message` compresses each message as a frame of zstd. Here
+/// each frame has one uncompressed block.
 TEST(BagsTest, MessagesMayBeCompressed) {
   const JointLog log = SomeLog();
   std::vector<std::string> messages;
@@ -199,7 +200,7 @@ TEST(BagsTest, MessagesMayBeCompressed) {
   ExpectInputError([&] { TakeTopic(messages); }, {"message of '/joint_states'", "zstd"});
 }
 
-/// Rows of a log, as a bag.
+/// A bag of some rows of a log.
 std::string PieceOf(const JointLog& log, Eigen::Index begin, Eigen::Index count) {
   JointLog part = log;
   part.time_s = log.time_s.segment(begin, count);
@@ -208,7 +209,7 @@ std::string PieceOf(const JointLog& log, Eigen::Index begin, Eigen::Index count)
   return McapBytes(part);
 }
 
-/// As rosbag2 lists the files of a bag that it has split.
+/// The list that rosbag2 writes of the files of a split bag.
 std::string Metadata(const std::string& files) {
   return "rosbag2_bagfile_information:\n  version: 9\n  storage_identifier: mcap\n"
          "  relative_file_paths:\n" +
@@ -221,7 +222,7 @@ TEST(BagsTest, FolderOfABagIsOneRecording) {
   folder.Write("bag_0.mcap", PieceOf(log, 0, 3));
   std::string second = PieceOf(log, 3, 5);
   const std::size_t channel = second.find(Bytes().Text("/joint_states").text) - 4;
-  second[channel] = 9;  // which numbers its topics anew: those of messages follow
+  second[channel] = 9;  // rosbag2 numbers topics anew; messages have the new number
   for (std::size_t at = channel - 9; second[at] == 4 || second[at] == 5;) {
     if (second[at] == 5) second[at + 9] = 9;
     at += 9 + static_cast<unsigned char>(second[at + 1]) +
@@ -233,7 +234,7 @@ TEST(BagsTest, FolderOfABagIsOneRecording) {
   EXPECT_EQ(read.joints->time_s, log.time_s);
   EXPECT_EQ(read.joints->positions, log.positions);
   EXPECT_EQ(read.joints->torques, log.torques);
-  EXPECT_EQ(read.notes.size(), 1u);  // one topic
+  EXPECT_EQ(read.notes.size(), 1u);  // one for the topic
   EXPECT_EQ(FilesOfRecording(folder.path()),
             (std::vector{folder.path() / "metadata.yaml", folder.path() / "bag_0.mcap",
                          folder.path() / "bag_1.mcap"}));
@@ -302,11 +303,11 @@ TEST(BagsTest, WhatIsLeftOfOtherBagsIsReadWhereAsked) {
   const std::string bag = file("bag1_none.bag");
   const RecordingFile whole = ReadBag(bag, {.salvage = true});
   EXPECT_TRUE(whole.salvaged.empty());
-  const RecordingFile cut = ReadBag(bag.substr(0, bag.size() - 3), {.salvage = true});  // its index
+  const RecordingFile cut = ReadBag(bag.substr(0, bag.size() - 3), {.salvage = true});  // cut index
   EXPECT_EQ(cut.joints->positions, whole.joints->positions);
   ASSERT_EQ(cut.salvaged.size(), 1u);
   EXPECT_NE(cut.notes.front().find("up to byte"), std::string::npos) << cut.notes.front();
-  // A recorder that crashed has not said yet where its index is.
+  // If a recorder crashed, the position of the index is not written.
   std::string open = bag;
   const std::size_t index = bag.find("index_pos=") + 10;
   open.replace(index, 8, 8, '\0');
@@ -316,7 +317,7 @@ TEST(BagsTest, WhatIsLeftOfOtherBagsIsReadWhereAsked) {
   const std::string database = file("bag.db3");
   const JointLog log = ReadBag(database, {.salvage = true}).joints.value();
   EXPECT_TRUE(ReadBag(database, {.salvage = true}).salvaged.empty());
-  const std::string torn = database.substr(0, 8 * 1024);  // two of its ten pages are gone
+  const std::string torn = database.substr(0, 8 * 1024);  // two of its ten pages are missing
   ExpectInputError([&] { ReadBag(torn); }, {"bag: the database", "cut off", "--salvage"});
   const RecordingFile left = ReadBag(torn, {.salvage = true});
   const Eigen::Index samples = left.joints->sample_count();
@@ -347,7 +348,8 @@ TEST(BagsTest, ADatabaseThatIsCutWithinItsLastPageIsNamed) {
   }
 }
 
-// A recorder that writes ahead leaves its last messages in a file of their own until it is closed.
+// With write-ahead logging, the last messages are in a file of their own until the recorder closes
+// the database.
 TEST(BagsTest, ADatabaseWithoutItsFileWalSaysSoAndLeavesNothingBesideIt) {
   std::string bytes = ReadFile(SourceFile("tests/recordings/bag.db3"));
   bytes[18] = bytes[19] = 2;
@@ -366,11 +368,11 @@ TEST(BagsTest, DamageIsNamedWithItsPlace) {
   ExpectInputError([&] { ReadBag(good.substr(0, good.size() - 100)); },
                    {"bag: byte", "cut off", "--salvage"});
   std::string bad = good;
-  bad[bad.find("elbow") - 4] = 100;  // the length of the name
+  bad[bad.find("elbow") - 4] = 100;  // length of the name
   ExpectInputError([&] { ReadBag(bad); },
                    {"bag: byte", "message of '/joint_states'", "ends within"});
   bad = good;
-  bad[bad.rfind("elbow") - 8] = 3;  // joints
+  bad[bad.rfind("elbow") - 8] = 3;  // number of joints
   ExpectInputError([&] { ReadBag(bad); }, {"bag: byte", "/joint_states"});
   const auto damaged = [](const char* name, std::size_t at) {
     std::string bytes = ReadFile(SourceFile(std::string("tests/recordings/") + name));

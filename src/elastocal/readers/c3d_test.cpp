@@ -13,7 +13,7 @@
 namespace elastocal {
 namespace {
 
-/// Positions that a float of 32 bits and tenths of a millimetre hold exactly.
+/// Positions that floats of 32 bits and tenths of a millimetre can hold exactly.
 MarkerTrajectories SomeMarkers(int frames, int markers) {
   MarkerTrajectories made{"made", {}, 250.0, {}};
   for (int m = 0; m < markers; ++m) made.names.push_back("M" + std::to_string(m));
@@ -36,12 +36,12 @@ void ExpectSame(const MarkerTrajectories& read, const MarkerTrajectories& made) 
   EXPECT_EQ(read.rate_hz, made.rate_hz);
   for (Eigen::Index i = 0; i < made.positions.size(); ++i) {
     const double a = read.positions(i), b = made.positions(i);
-    // Metres from mm: a rounding of the product.
+    // Converting mm to metres costs the rounding of one product.
     ASSERT_TRUE((std::isnan(a) && std::isnan(b)) || std::abs(a - b) < 1e-15) << i;
   }
 }
 
-// Hand values of the three processors.
+// The hand values are for the three types of processors.
 TEST(C3dTest, NumbersOfEachProcessor) {
   EXPECT_EQ(C3dReal("\x00\x00\x80\x3F", C3dProcessor::kIntel), 1.0f);
   EXPECT_EQ(C3dReal("\x3F\x80\x00\x00", C3dProcessor::kMips), 1.0f);
@@ -75,7 +75,7 @@ TEST(C3dTest, LongListsOfLabelsAndResultsOfModels) {
   MarkerTrajectories made = SomeMarkers(3, 300);
   RecordingFile file = ReadBytes(C3dWriter(made, {.labels_a_list = 120}).Write());
   ExpectSame(*file.markers, made);
-  // Vicon has angles among the points, and an unlabelled point has no name.
+  // Vicon writes angles among the points. An unlabelled point has no name.
   made.names[1] = "LKneeAngles";
   made.names[2] = "";
   file = ReadBytes(C3dWriter(made, {.labels_a_list = 120, .angles = {"LKneeAngles"}}).Write());
@@ -100,7 +100,7 @@ TEST(C3dTest, UnitAndAxisAreStatedOrAskedFor) {
   const std::string metres =
       C3dWriter(made, {.units = "m", .y_screen = "+Y", .metres = 1.0}).Write();
   EXPECT_EQ(ReadBytes(metres).up, "y");
-  // A float of 32 bits holds no decimals exactly.
+  // A float of 32 bits cannot hold decimals exactly.
   EXPECT_NEAR(ReadBytes(metres).markers->positions(3, 1), made.positions(3, 1), 1e-8);
   ExpectInputError([&] { ReadBytes(metres, {.unit = "mm"}); }, {"a.bin", "'m'", "'mm'"});
   const std::string silent = C3dWriter(made, {.units = "", .y_screen = ""}).Write();
@@ -124,7 +124,7 @@ TEST(C3dTest, DamageIsNamedWithItsPlace) {
   ExpectInputError([&] { ReadBytes("LP_joint,RP_joint\n1,2\n"); }, {"no known format", "C3D"});
 }
 
-// The name of the file tells nothing, and only what is kept takes memory.
+// The file's name does not reveal the format. Only the parts that are kept use memory.
 TEST(C3dTest, FilesAreReadPieceByPiece) {
   MarkerTrajectories made = SomeMarkers(3000, 2);
   const std::string bytes = C3dWriter(made, {.processor = 86, .analog = 60}).Write();

@@ -38,10 +38,11 @@ void ExpectMade(const RecordingFile& file, const std::string& prefix = "") {
     const double a = file.markers->positions(i), b = made.positions(i);
     ASSERT_TRUE((std::isnan(a) && std::isnan(b)) || std::abs(a - b) < 1e-15) << i;
   }
-  EXPECT_EQ(file.up, "");  // none of them says
+  EXPECT_EQ(file.up, "");  // no such file states it
 }
 
-/// What a spreadsheet of a country with decimal commas makes of a text: of its numbers too.
+/// The text as a spreadsheet saves it in a country with decimal commas, which also changes its
+/// numbers.
 std::string Resaved(std::string text, char separator) {
   std::ranges::replace(text, ',', separator);
   for (std::size_t i = 1; i + 1 < text.size(); ++i) {
@@ -80,14 +81,14 @@ TEST(ViconTest, TrajectoriesBesideOtherSections) {
   EXPECT_EQ(file.format, "Vicon Nexus CSV");
   ExpectMade(file, "talos:");
   EXPECT_EQ(file.notes, (std::vector<std::string>{"the section Devices is passed over"}));
-  // By Nexus 2.16: two empty lines first, and nothing else in the file. CR LF ends its lines.
+  // Nexus 2.16 writes this: two empty lines, then only this section. Lines end with CR LF.
   std::string alone = "\n\n" + text.substr(text.find("Trajectories"));
   for (std::size_t at = 0; (at = alone.find('\n', at)) != std::string::npos; at += 2) {
     alone.insert(at, "\r");
   }
   ExpectMade(ReadCsv(alone), "talos:");
   for (const char separator : {';', '\t'}) ExpectMade(ReadCsv(Resaved(text, separator)), "talos:");
-  // A comma is the mark of all decimals of a file, or of none.
+  // Either all numbers of a file have a decimal comma, or none.
   std::string mixed = Resaved(text, ';');
   mixed.replace(mixed.rfind(','), 1, ".");
   ExpectInputError([&] { ReadCsv(mixed); }, {"a number with a decimal comma, as others above"});
@@ -134,7 +135,8 @@ TEST(MotiveTest, MarkersWithColumnsOfQuality) {
   ExpectMade(ReadCsv(Resaved(MotiveText(ThreeMarkers()), ';')));
 }
 
-/// As Motive 2 exports a body with one measured marker, and the marker that the body's model has.
+/// Motive 2 exports a body like this: one measured marker, and the position that the body's model
+/// has for it.
 const char* const kBodyTake =
     "Format Version,1.23,Take Name,\"a, b\",Export Frame Rate,100.000000,Rotation Type,Quaternion,"
     "Length Units,Meters,Coordinate Space,Global\n"
@@ -158,14 +160,14 @@ TEST(MotiveTest, RigidBodiesAreFourMarkers) {
             (std::vector<std::string>{"Unlabeled 7", "hand_1", "hand_2", "hand_3", "hand_4"}));
   EXPECT_EQ(markers.rate_hz, 100.0);
   ASSERT_EQ(markers.frame_count(), 2);
-  Eigen::RowVectorXd expected(15);  // turned about z by a quarter
+  Eigen::RowVectorXd expected(15);  // turned about z by 90 degrees
   expected << 0.5, 0.6, 0.7, 1, 2, 3, 1, 2.1, 3, 0.9, 2, 3, 1, 2, 3.1;
   EXPECT_LT((markers.positions.row(0) - expected).norm(), 1e-9);
   EXPECT_TRUE(markers.positions.row(1).array().isNaN().all());
-  EXPECT_EQ(file.notes.size(), 1u);  // of what the model expects
+  EXPECT_EQ(file.notes.size(), 1u);  // about the positions of the model
 }
 
-// As Motive exported in 2016 (format 1.21).
+// Motive exported such files in 2016 (format 1.21).
 TEST(MotiveTest, RowsOfTheHeaderWithoutNames) {
   std::string text = kBodyTake;
   for (const char* name : {"Type", "Name", "ID"}) {
@@ -195,7 +197,7 @@ TEST(MotiveTest, MistakesAreNamed) {
                    {"file:7", "column 3", "'hand'", "X, Y, Z of Rotation Type XYZ"});
 }
 
-/// The body of kBodyTake with Euler angles of X, Y and Z, degrees.
+/// The body of kBodyTake with Euler angles about X, Y and Z in degrees.
 std::string EulerTake(const std::string& order, const std::string& angles) {
   std::string text = Replaced(kBodyTake, "Quaternion", order);
   text = Replaced(text, ",Type,Rigid Body,", ",Type,");
@@ -208,8 +210,8 @@ std::string EulerTake(const std::string& order, const std::string& angles) {
 }
 
 TEST(MotiveTest, EulerAnglesTurnAboutAxesThatTurned) {
-  // X then Z, of which X has made -Y: the body's x comes to lie along z. About fixed axes it would
-  // be along y.
+  // The body turns about X and then about its Z, which X has turned to -Y. So its x axis comes to
+  // lie along z. With fixed axes it would lie along y.
   Eigen::RowVectorXd expected(15);
   expected << 0.5, 0.6, 0.7, 1, 2, 3, 1, 2, 3.1, 0.9, 2, 3, 1, 1.9, 3;
   const RecordingFile file = ReadCsv(EulerTake("XYZ", "90,0,90"));
@@ -251,8 +253,8 @@ TEST(MotiveTest, MarkersAloneNeedNoRotationType) {
   ExpectMade(ReadCsv(other));
 }
 
-/// Two lines of a recording of QTM itself (shiplab/dt_cv, M510A-IRR-EKFPID-020019_6D.tsv), and one
-/// without the body.
+/// Two lines of a recording by QTM itself (shiplab/dt_cv, M510A-IRR-EKFPID-020019_6D.tsv), and a
+/// line in which the body is missing.
 const char* const kQtmBodies =
     "NO_OF_FRAMES\t3\nNO_OF_CAMERAS\t4\nNO_OF_BODIES\t1\nFREQUENCY\t100\nNO_OF_ANALOG\t0\n"
     "DATA_INCLUDED\t6D\nBODY_NAMES\tPSVH\n"
@@ -273,8 +275,8 @@ TEST(QtmOtherTest, BodiesOfTheirOwnExport) {
   EXPECT_NEAR(markers.positions(1, 0), -0.19564748, 1e-12);
   const RecordingFile resaved = ReadCsv(Resaved(kQtmBodies, '\t'));
   EXPECT_EQ(resaved.markers->positions.topRows(2), markers.positions.topRows(2));
-  // QTM's own angles (its matrix has five decimals): the body's y axis, of 100 mm, rises by
-  // sin(roll), and its x axis turns by yaw.
+  // QTM states these angles (its matrix has five decimals). The body's y axis, 100 mm long, rises
+  // by sin(roll), and its x axis turns by yaw.
   const double roll = -0.78772 * kRadiansPerDegree, yaw = 0.12055 * kRadiansPerDegree;
   EXPECT_NEAR(markers.positions(1, 8) - markers.positions(1, 2), 0.1 * std::sin(roll), 2e-6);
   EXPECT_NEAR(markers.positions(1, 4) - markers.positions(1, 1), 0.1 * std::sin(yaw), 2e-6);

@@ -13,9 +13,9 @@ namespace {
 using Numbers = std::array<double, 7>;
 
 const double kHalf = std::sqrt(0.5);
-const Numbers kTurned = {10, 20, 30, 0, 0, kHalf, kHalf};  // about z by a quarter
+const Numbers kTurned = {10, 20, 30, 0, 0, kHalf, kHalf};  // turned about z by 90 degrees
 
-/// Two transforms of a child, a second apart.
+/// Adds two transforms of a child, a second apart.
 void Move(FrameTransforms& transforms, const std::string& parent, const std::string& child,
           std::int64_t begin_ns = 1000000000) {
   for (int i = 0; i < 2; ++i) {
@@ -47,7 +47,7 @@ TEST(FrameTransforms, TheOnlyFrameThatOthersMoveInIsTheCameras) {
   EXPECT_EQ(tracks[1].name, "RHAND");
   EXPECT_EQ(tracks[0].stamps_ns, (std::vector<std::int64_t>{1000000000, 2000000000}));
   const std::vector<double> sent = {1, -2, 0.5, 0, 0, kHalf, kHalf, 2, -2, 0.5, 0, 0, kHalf, kHalf};
-  EXPECT_EQ(tracks[0].poses, sent);  // every bit
+  EXPECT_EQ(tracks[0].poses, sent);  // the same bits
 }
 
 TEST(FrameTransforms, LastPartsThatAreNotUniqueKeepTheirNames) {
@@ -66,7 +66,7 @@ TEST(FrameTransforms, StaticTransformsLieBetween) {
     transforms.Add({"room", "door", 0, 0, {1, 0, 0, 0, 0, 0, 1}}, true, "");
     return Taken(transforms);
   };
-  // About z by a quarter: (1, -2) becomes (2, 1), and two quarters are a half.
+  // A turn about z by 90 degrees maps (1, -2) to (2, 1), and two make 180 degrees.
   ExpectPose(with("room", "LHAND")[0], 0, {12, 21, 30.5, 0, 0, 1, 0});
   ExpectPose(with("room", "LHAND")[0], 1, {12, 22, 30.5, 0, 0, 1, 0});
   ExpectPose(with("door", "LHAND")[0], 0, {11, 21, 30.5, 0, 0, 1, 0});
@@ -103,7 +103,7 @@ TEST(FrameTransforms, WhatHasNoPoseIsNamed) {
 TEST(FrameTransforms, StampsAreAllThereOrNone) {
   FrameTransforms none("world", {});
   Move(none, "world", "hand", 0);
-  EXPECT_EQ(Taken(none)[0].stamps_ns, (std::vector<std::int64_t>{7, 8}));  // when received
+  EXPECT_EQ(Taken(none)[0].stamps_ns, (std::vector<std::int64_t>{7, 8}));  // times of reception
   FrameTransforms some = none;
   Move(some, "world", "hand");
   std::string why;

@@ -18,7 +18,8 @@ RecordingFile ReadArchive(const std::string& bytes, const ReaderOptions& options
 
 std::string Numpy(const std::string& name) { return SourceFile("tests/recordings/" + name); }
 
-// What NumPy itself wrote (tests/recordings/make_npz.py): compressed, of several types and orders.
+// NumPy itself wrote this file (tests/recordings/make_npz.py): compressed, with several types and
+// orders.
 TEST(NpzTest, ColumnsOfNumpy) {
   const RecordingFile file = ReadRecordingFile(Numpy("joints_columns.npz"), {});
   EXPECT_EQ(file.format, "NumPy .npz");
@@ -45,7 +46,7 @@ TEST(NpzTest, MatricesOfNumpy) {
   }
 }
 
-// Arrays of records, with room between their fields or with rows of matrices as fields.
+// Arrays of records, with padding between their fields or with matrices as fields.
 TEST(NpzTest, RecordsOfNumpy) {
   for (const bool matrix : {false, true}) {
     const RecordingFile file =
@@ -66,7 +67,7 @@ TEST(NpzTest, RecordsOfNumpy) {
   EXPECT_EQ(notes("joints_records.npz"),
             (std::vector<std::string>{"the field force is passed over",
                                       "the field label is passed over"}));
-  EXPECT_EQ(notes("joints_records_matrix.npz"),  // an array of objects, which nobody needs
+  EXPECT_EQ(notes("joints_records_matrix.npz"),  // an array of objects, which is not needed
             (std::vector<std::string>{"the array about is passed over"}));
 }
 
@@ -77,7 +78,7 @@ TEST(NpzTest, HandMadeArchive) {
   EXPECT_EQ(log.positions.col(0), q);
 }
 
-// The unit of the time is stated by the name of the array, or is asked for.
+// The name of the array states the unit of the time. Otherwise the message asks for it.
 TEST(NpzTest, TimeIsInTheUnitThatIsStated) {
   const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(21, 5.0, 7.0),
                         q = Eigen::VectorXd::Random(21);
@@ -98,7 +99,7 @@ TEST(NpzTest, TimeIsInTheUnitThatIsStated) {
   ExpectInputError([&] { read("t", 1.0, "min"); }, {"'min'", "s, ms, us or ns"});
 }
 
-// numpy.datetime64, as pandas has its times, and numpy.timedelta64 have a unit of their own.
+// numpy.datetime64, which pandas uses for times, and numpy.timedelta64 have their own units.
 TEST(NpzTest, TimesOfNumpy) {
   const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(4, 0.0, 0.3);
   for (const char* name : {"joints_datetime.npz", "joints_timedelta.npz"}) {
@@ -112,7 +113,7 @@ TEST(NpzTest, MistakesAreNamed) {
   const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(4, 0.0, 0.3), q = Eigen::VectorXd::Random(4);
   const std::string good = NpzBytes({{"t", t}, {"elbow", q}});
   std::string bad = good;
-  bad[bad.find("elbow.npy") + 9 + 128 + 8] ^= 1;  // an element: the checksum tells
+  bad[bad.find("elbow.npy") + 9 + 128 + 8] ^= 1;  // changes an element, which the checksum tells
   ExpectInputError([&] { ReadArchive(bad); }, {"log: array 'elbow.npy': byte", "CRC"});
   ExpectInputError([&] { ReadArchive(good.substr(0, good.size() - 30)); },
                    {"log: byte", "archive"});

@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-/// As QTM writes it, with the markers A and "B 2".
+/// A header as QTM writes it, with the markers A and "B 2".
 const std::string kTsvHeader =
     "NO_OF_FRAMES\t3\r\nNO_OF_CAMERAS\t20\r\nNO_OF_MARKERS\t2\r\nFREQUENCY\t100\r\n"
     "NO_OF_ANALOG\t0\r\nANALOG_FREQUENCY\t0\r\nDESCRIPTION\t--\r\n"
@@ -20,7 +20,7 @@ const std::string kTsvHeader =
     "EVENT\tstart\t1\t0.00000\r\nEVENT\tend\t3\t0.02000\r\nMARKER_NAMES\tA\tB 2\r\n"
     "TRAJECTORY_TYPES\tMeasured\tMixed\r\n";
 const std::string kTsvColumns = "Frame\tTime\tA X\tA Y\tA Z\tB 2 X\tB 2 Y\tB 2 Z\r\n";
-/// The least that says everything.
+/// The shortest sufficient header.
 const std::string kShortTsv = "FREQUENCY\t100\nMARKER_NAMES\tA\tB\n";
 
 MarkerTrajectories ParseTsv(const std::string& text) { return ParseQtmTsv(text, "t.tsv"); }
@@ -29,7 +29,7 @@ void ExpectTsvError(const std::string& text, std::initializer_list<std::string> 
   ExpectInputError([&] { ParseTsv(text); }, parts);
 }
 
-/// Products with 1e-3 are rounded.
+/// Rounding of products with 1e-3.
 constexpr double kTsvRounding = 1e-15;
 
 TEST(QtmTsv, ReadsWhatQtmWrites) {
@@ -47,7 +47,7 @@ TEST(QtmTsv, ReadsWhatQtmWrites) {
   EXPECT_NEAR(t.positions(1, 2), 1.001, kTsvRounding);
   EXPECT_TRUE(t.positions.block(1, 3, 1, 3).array().isNaN().all());
   EXPECT_TRUE(t.positions.block(2, 0, 1, 3).array().isNaN().all());
-  // Not a gap: one coordinate is not zero.
+  // This is no gap, because one coordinate is not zero.
   EXPECT_EQ(t.positions(2, 3), 0.0);
   EXPECT_NEAR(t.positions(2, 5), 0.0065, kTsvRounding);
 }
@@ -68,7 +68,8 @@ TEST(QtmTsv, InfersTheColumnsFromTheirNumber) {
       EXPECT_NEAR(t.positions(0, 5), 0.006, kTsvRounding) << row;
     }
   }
-  // One cell more than six: is the last marker a gap after a frame number, or is the end a tab?
+  // With one cell more than six, either a frame number comes first and the last marker has a gap,
+  // or the line ends with a tab.
   EXPECT_NEAR(ParseTsv(kShortTsv + "7\t1\t2\t3\t\t\t\n").positions(0, 0), 0.001, kTsvRounding);
   EXPECT_NEAR(ParseTsv(kShortTsv + "1\t2\t3\t\t\t\t\n").positions(0, 0), 0.001, kTsvRounding);
 }
@@ -103,13 +104,13 @@ TEST(QtmTsv, FramesFollowEachOther) {
   ExpectTsvError(head + "7\t0.00" + cells + "8\t0.02" + cells,
                  {"t.tsv:5: ", "Time", "0.02 after 0"});
   ExpectTsvError(head + "7\t0.00" + cells + "8\t0.00" + cells, {"t.tsv:5: ", "Time", "not later"});
-  // Steps of 0.012 s are within half a frame of 0.01 s each, but not all together.
+  // Each step of 0.012 s differs from 0.01 s by less than half a frame, but their sum does not.
   ExpectTsvError(head + "7\t0" + cells + "8\t.012" + cells + "9\t.024" + cells + "10\t.036" + cells,
                  {"t.tsv:7: ", "Time", "0.036 s", "FREQUENCY, 100", "0.03 s"});
   EXPECT_EQ(ParseTsv(head + "7\t5.00" + cells + "8\t5.01" + cells).rate_hz, 100.0);
 }
 
-// QTM writes numbers as Windows has them in the user's country.
+// QTM writes numbers in the format that Windows uses in the user's country.
 TEST(QtmTsv, DecimalCommasAreThoseOfAllNumbers) {
   const std::string points =
       "FREQUENCY\t99.5\nMARKER_NAMES\tA\tB\nFrame\tTime\tA X\tA Y\tA Z\tB X\tB Y\tB Z\n"
@@ -202,7 +203,7 @@ TEST(QtmTsv, WritesWhatItReads) {
   EXPECT_EQ(read.names, written.names);
   EXPECT_EQ(read.rate_hz, written.rate_hz);
   EXPECT_TRUE(std::isnan(read.positions(1, 0)));
-  // Three decimals of a millimetre: half a micrometre.
+  // Three decimals of a millimetre round by at most half a micrometre.
   EXPECT_LT((read.positions.row(0) - written.positions.row(0)).cwiseAbs().maxCoeff(), 0.5e-6);
   WriteQtmTsv(file, written, 12);
   read = ReadQtmTsv(file);

@@ -14,7 +14,7 @@ namespace {
 
 using Unpack = bool (*)(std::span<const char>, std::size_t, std::vector<char>&);
 
-/// The same text by each packer, some hundred bytes of each.
+/// The same text, compressed by one of the packers to some hundred bytes.
 struct Packed {
   std::string name, bytes;
   Unpack unpack;

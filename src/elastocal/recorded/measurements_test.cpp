@@ -32,7 +32,7 @@ class MeasurementsTest : public testing::Test {
     WriteJointLog(folder_.path() / "a.csv", played.log);
   }
 
-  /// One trial of this kind.
+  /// Writes an experiment with one trial of this kind.
   void WriteExperiment(const std::string& kind) const {
     folder_.Write("experiment.yaml",
                   "trials: [{name: check, kind: " + kind +
@@ -43,7 +43,8 @@ class MeasurementsTest : public testing::Test {
   ScratchFolder folder_;
 };
 
-// To estimate from what was kept for judging the estimates would make the judgement worthless.
+// Estimating from the trials that were kept to judge the estimate would make the judgement
+// worthless.
 TEST_F(MeasurementsTest, ValidationTrialsAreNotEstimatedFrom) {
   WriteExperiment("random");
   ExpectInputError([&] { ReadMeasurements(project_, {folder_.path()}); },
@@ -55,7 +56,7 @@ TEST_F(MeasurementsTest, ValidationTrialsAreNotEstimatedFrom) {
   EXPECT_EQ(ReadMeasurements(project_, {folder_.path()}).calibration.posture_count(), 8);
 }
 
-// Both recordings number their markers by themselves.
+// Each of the two recordings has its own order of markers.
 TEST_F(MeasurementsTest, MarkersAreMatchedByName) {
   WriteExperiment("calibration");
   const Measurements whole = ReadMeasurements(project_, {folder_.path()});
@@ -104,7 +105,7 @@ TEST_F(MeasurementsTest, MarkersAreMatchedByName) {
   }
 }
 
-// Folds leave out what was recorded on one day.
+// A fold leaves out postures that were recorded on one day.
 TEST_F(MeasurementsTest, EachFolderIsASession) {
   WriteExperiment("calibration");
   const ScratchFolder other;
@@ -127,7 +128,7 @@ TEST_F(MeasurementsTest, EachFolderIsASession) {
   EXPECT_NO_THROW(DealFolds(both, {.folds = 3, .unit = FoldUnit::kTrial}));
 }
 
-// Two days of one robot have trials of the same names.
+// Two days of one robot may have trials with the same names.
 TEST_F(MeasurementsTest, TheTruthOfATrialIsThatOfItsOwnFolder) {
   const ScratchFolder other;
   std::filesystem::copy(folder_.path(), other.path(), std::filesystem::copy_options::recursive);
@@ -146,7 +147,7 @@ TEST_F(MeasurementsTest, TheTruthOfATrialIsThatOfItsOwnFolder) {
   }
 }
 
-// Of which kind they are says nothing of which trial came after which.
+// The kinds of trials do not tell their order in time.
 TEST_F(MeasurementsTest, FeetRestInTheOrderOfTheTrials) {
   std::string trials;
   for (const auto& [name, kind] : std::map<std::string, std::string>{

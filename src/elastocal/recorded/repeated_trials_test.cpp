@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-/// Two trials of two postures each, every number different.
+/// Two trials of two postures each, with all numbers different.
 Recording TwoTrials(const std::string& a, const std::string& b, double from) {
   Recording recording;
   recording.trials = {{.name = a, .chains = {"arm"}}, {.name = b, .chains = {"arm"}}};
@@ -27,7 +27,7 @@ TEST(RepeatedTrials, AreFoundWithinTheEstimateAndAcrossWhateverTheirNames) {
   EXPECT_TRUE(repeated.estimated_twice.empty());
   EXPECT_TRUE(repeated.judged_by_estimated.empty());
 
-  // A marker that only one of them has seen is no difference.
+  // A marker that only one of the two trials shows makes no difference.
   Recording& judged = measured.validation;
   judged.q.bottomRows(2) = measured.calibration.q.topRows(2);
   judged.markers.bottomRows(2) = measured.calibration.markers.topRows(2);

@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-// NIST's examples.
+// These are NIST's examples.
 TEST(Encoding, Sha256) {
   EXPECT_EQ(Sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(Sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
@@ -25,7 +25,7 @@ TEST(Encoding, Sha256) {
             "ffe054fe7ae0cb6dc65c3af9b61d5209f439851db43d0ba5997337df154668eb");
 }
 
-// The examples of RFC 4648, section 10.
+// These are the examples of RFC 4648, section 10.
 TEST(Encoding, Base64) {
   EXPECT_EQ(Base64(""), "");
   EXPECT_EQ(Base64("f"), "Zg==");
@@ -34,7 +34,7 @@ TEST(Encoding, Base64) {
 }
 
 TEST(Encoding, FloatsAreLittleEndianRowByRow) {
-  // 1 is 3f800000, -2 is c0000000.
+  // In bytes, 1 is 3f800000 and -2 is c0000000.
   EXPECT_EQ(Base64Floats(std::vector<double>{1.0, -2.0}),
             Base64(std::string("\0\0\x80\x3f\0\0\0\xc0", 8)));
   Eigen::MatrixXd matrix(2, 2);

@@ -26,7 +26,7 @@ TEST(ParseJsonObject, NamesTheFileOfWhatIsNone) {
   }
 }
 
-// Of 100 000 levels the destructor alone would exhaust the stack.
+// With 100 000 levels, even the destructor would exhaust the stack.
 TEST(ParseJsonObject, RefusesDeepNesting) {
   ExpectInputError([] { ParseJsonObject("a.json", Nested(101)); }, {"a.json", "100 levels"});
   const std::string open(100000, '[');

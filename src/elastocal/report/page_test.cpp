@@ -82,7 +82,7 @@ TEST(Page, CorrelationsAreInHundredths) {
   estimate.covariance.resize(2, 2);
   estimate.covariance << 4.0, -3.0, -3.0, 9.0;  // correlation -3 / (2 * 3)
   const Json report = Json::parse(MakeReportJson({"out", "", {}, {{"now", estimate}}}));
-  EXPECT_EQ(report["correlation"]["lower"], "ZM5k");  // bytes 100, -50, 100
+  EXPECT_EQ(report["correlation"]["lower"], "ZM5k");  // the bytes 100, -50 and 100
 }
 
 TEST(Page, TheTemplateIsWholeOrAbsent) {

@@ -46,14 +46,14 @@ TEST(Corrections, ShapesHaveTheirHandValues) {
   EXPECT_DOUBLE_EQ(of("shoulder.gear"), 0.3 - 0.5);
   EXPECT_DOUBLE_EQ(of("shoulder.coupling_elbow"), 0.7 - 0.5);
   EXPECT_DOUBLE_EQ(of("elbow.hysteresis"), -1.0);
-  EXPECT_NEAR(of("elbow.backlash"), -1.0, 1e-12);  // far above a fiftieth of the effort
+  EXPECT_NEAR(of("elbow.backlash"), -1.0, 1e-12);  // the load is far above a fiftieth of the effort
   EXPECT_DOUBLE_EQ(of("elbow.stiffening"), -0.16);
   EXPECT_DOUBLE_EQ(of("waist.suspension_rx"), 5.0);
   EXPECT_DOUBLE_EQ(of("waist.suspension_x"), -7.0);
   EXPECT_DOUBLE_EQ(of("waist.drift_y"), 1.5);
 }
 
-// The ball screw with splines of a SCARA lifts its tool when it turns it.
+// The ball screw with splines of a SCARA lifts its tool while it turns it.
 TEST(Corrections, ASlideAndAJointThatTurnsAreCoupled) {
   RobotTree tree = PlanarArm();
   for (Joint& joint : tree.joints) joint.limits = {-1.0, 2.0, 1.0, 10.0};
@@ -82,7 +82,7 @@ TEST(Corrections, DriftNeedsTimesAndMimicJointsHaveNone) {
   }
 }
 
-// A gear that turns by a hundredth less than its encoder says.
+// The gear turns a hundredth less than its encoder says.
 TEST(Corrections, AGearTurnsTheJointByItsShare) {
   RobotTree tree = PlanarArm();
   for (Joint& joint : tree.joints) joint.limits = {-1.0, 1.0, 1.0, 10.0};
@@ -116,12 +116,12 @@ void AddWeight(RobotTree& tree, int joint, double mass, const Eigen::Vector3d& m
   link.mass += mass;
 }
 
-/// Centre of mass of all that a joint's link carries by fixed joints, in its frame, m.
+/// Centre of mass of a joint's link and all that is fixed to it, in that link's frame, m.
 Eigen::Vector3d CentreOfBody(const RobotTree& tree, int joint) {
   return BodyInertias(tree)[joint + 1].com;
 }
 
-/// An elbow that carries more turns the shoulder, and the marker with it.
+/// A heavier elbow turns the shoulder, and the marker with it.
 TEST(Corrections, MassAndFirstMomentHaveTheirHandValues) {
   RobotTree tree = PlanarArm();
   const int shoulder = 0, elbow = 1;
@@ -151,7 +151,7 @@ TEST(Corrections, MassAndFirstMomentHaveTheirHandValues) {
   EXPECT_LT((found - expected).norm(), 1e-14);
 }
 
-// Where nothing gives way, or torques are measured, a mass is nothing that markers show.
+// If nothing gives way, or if torques are measured, markers do not show a mass.
 TEST(Corrections, AMassNeedsASpringThatStaticsLoad) {
   RobotTree tree = PlanarArm();
   tree.links[tree.joints[1].child_link].mass = 1.0;
@@ -181,7 +181,8 @@ TEST(Corrections, AMassNeedsASpringThatStaticsLoad) {
 
 class CorrectionsOfRandomRobots : public testing::TestWithParam<int> {};
 
-// All columns, those of the root link's displacement too, on robots that are bent and corrected.
+// Checks all columns, including those of the root link's displacement, for elastic robots with
+// corrections.
 TEST_P(CorrectionsOfRandomRobots, ColumnsAgreeWithDifferences) {
   Random random(GetParam());
   RobotTree tree = RandomRobot(kUsualRelations, random);
@@ -202,7 +203,7 @@ TEST_P(CorrectionsOfRandomRobots, ColumnsAgreeWithDifferences) {
   GeneralizedJacobian jacobian(model);
   jacobian.Evaluate(ApplyErrors(model, delta), q, loads);
   const Eigen::MatrixXd J = jacobian.Dense();
-  const double step = 1e-5;  // leaves 1e-10, see jacobian_test.cpp
+  const double step = 1e-5;  // the error is 1e-10, see jacobian_test.cpp
   std::map<CorrectionTarget, int> corrections;
   for (int i = 0; i < model.parameter_count(); ++i) {
     Eigen::VectorXd forward = delta, backward = delta;
@@ -224,7 +225,8 @@ TEST_P(CorrectionsOfRandomRobots, ColumnsAgreeWithDifferences) {
   EXPECT_EQ(corrections[CorrectionTarget::kMarker], 3);
 }
 
-// The loads of a robot whose bodies weigh more, or that stands askew.
+// The derivatives are those of the loads of a robot with heavier bodies, or of one that stands
+// askew.
 TEST_P(CorrectionsOfRandomRobots, LoadsAgreeWithThoseOfTheOtherRobot) {
   Random random(100 + GetParam());
   RobotTree tree = RandomRobot(kUsualRelations, random);
@@ -247,7 +249,7 @@ TEST_P(CorrectionsOfRandomRobots, LoadsAgreeWithThoseOfTheOtherRobot) {
     Eigen::Matrix3Xd expected;
     if (correction.shape == CorrectionShape::kGravityTilt) {
       const Eigen::Vector3d axis = WaistPose(geometry).linear().col(correction.axis);
-      const double step = 1e-4;  // leaves a part of 1e-8
+      const double step = 1e-4;  // the relative error is 1e-8
       expected = (GravityLoads(model, geometry, q, Eigen::AngleAxisd(step, axis) * gravity, 0) -
                   GravityLoads(model, geometry, q, Eigen::AngleAxisd(-step, axis) * gravity, 0)) /
                  (2.0 * step);
@@ -260,7 +262,7 @@ TEST_P(CorrectionsOfRandomRobots, LoadsAgreeWithThoseOfTheOtherRobot) {
     }
     EXPECT_LT((derivatives[i] - expected).norm(), 1e-7 * (1.0 + expected.norm()))
         << correction.name;
-    loaded += derivatives[i].norm() > 1e-6 ? 1 : 0;  // a moment loads no joint that slides
+    loaded += derivatives[i].norm() > 1e-6 ? 1 : 0;  // a moment does not load a joint that slides
   }
   EXPECT_GT(loaded, 4);
 }

@@ -13,8 +13,8 @@
 namespace elastocal {
 namespace {
 
-/// Four joints about y in a row, 0.3 m apart, with masses: lean, bend, level and, following level
-/// as a mimic joint, last. A tip 0.2 m further.
+/// Four joints about y in a row, 0.3 m apart, with masses: lean, bend, level and last, which
+/// follows level as a mimic joint. The tip is 0.2 m further.
 RobotTree LeaningTorso() {
   RobotTree tree = MakeRoot();
   int link = 0;
@@ -28,7 +28,7 @@ RobotTree LeaningTorso() {
   return tree;
 }
 
-/// level = -(lean + bend) + 0.2.
+/// Couples level = -(lean + bend) + 0.2.
 RobotTree LevelTorso() { return Couple(LeaningTorso(), {{2, {{0, -1.0}, {1, -1.0}}, 0.2}}); }
 
 TEST(Coupling, AJointFollowsTheSumOfTwo) {
@@ -39,7 +39,7 @@ TEST(Coupling, AJointFollowsTheSumOfTwo) {
   // level = -(0.3 - 0.7) + 0.2, last = 0.5 * level + 0.1.
   EXPECT_NEAR(JointPosition(tree.joints[2], q), 0.6, 1e-15);
   EXPECT_NEAR(JointPosition(tree.joints[3], q), 0.4, 1e-15);
-  // The whole turns by lean + bend + level + last.
+  // The tip turns by lean + bend + level + last.
   const Transform T = LinkTransforms(tree, q)[Size(FindLink(tree, "tip"))];
   EXPECT_LT((T.linear() - RotAxis({0, 1, 0}, 0.6).linear()).norm(), 1e-14);
 }
@@ -52,7 +52,7 @@ TEST(Coupling, CoupledJointsAndMimicsMayFollowEachOther) {
   const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 0.4);
   EXPECT_NEAR(JointPosition(tree.joints[2], q), 2.3, 1e-14);
   EXPECT_NEAR(JointPosition(tree.joints[3], q), 1.25, 1e-14);
-  // By way of the mimic joint: bend = last = 0.5 level + 0.1.
+  // Coupling through the mimic joint: bend = last = 0.5 level + 0.1.
   const RobotTree by_mimic = Couple(LeaningTorso(), {{1, {{3, 1.0}}, 0.0}});
   EXPECT_EQ(by_mimic.joints[1].coordinate, by_mimic.joints[2].coordinate);
   EXPECT_EQ(by_mimic.joints[1].multiplier, 0.5);
@@ -95,7 +95,7 @@ TEST(Coupling, DerivativesOfAChainAreThoseOfDifferences) {
     const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(c);
     const Transform ahead = LinkTransforms(tree, x + step)[Size(tip)];
     const Transform behind = LinkTransforms(tree, x - step)[Size(tip)];
-    // Differences of 1e-6: rounding of 1e-10, and a third derivative times 1e-12.
+    // With a step of 1e-6, rounding is 1e-10, and truncation is the third derivative times 1e-12.
     EXPECT_LT((J.col(c) - (ahead.translation() - behind.translation()) / (2 * kStep)).norm(), 1e-8);
     const Eigen::AngleAxisd turn((ahead * behind.inverse()).linear());
     EXPECT_LT((R.col(c) - turn.angle() * turn.axis() / (2 * kStep)).norm(), 1e-8);
@@ -117,7 +117,7 @@ TEST(Coupling, APartOfTheRobotKeepsItsCouplings) {
   const RobotTree part = Subtree(tree, FindLink(tree, "bend_link"));
   ASSERT_EQ(part.joints.size(), 2u);
   ASSERT_EQ(part.coordinate_count(), 2);
-  // Entries of q in the order in which the part's joints name them: lean, bend.
+  // The entries of q have the order in which the part's joints name them: lean, bend.
   EXPECT_NEAR(JointPosition(part.joints[0], Eigen::Vector2d(0.3, -0.7)), 0.6, 1e-15);
   RobotTree copy = LeaningTorso();
   CopyDrives(tree, copy);

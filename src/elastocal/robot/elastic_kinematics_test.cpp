@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kinematics and Jacobian of joints and legs that give way under loads.
+// Kinematics and Jacobian of joints and legs that give way under load.
 #include <cmath>
 #include <set>
 
@@ -23,7 +23,7 @@ Eigen::VectorXd Errors(const ErrorModel& model,
 }
 
 TEST(ElasticKinematics, TorsionByHandTurnsWithTheLoad) {
-  // A quarter of a turn at the elbow: 0.5 rad/(N.m) under pi N.m.
+  // The elbow turns by a quarter of a turn, with 0.5 rad/(N.m) under pi N.m.
   const ErrorModel model = MakeErrorModel(PlanarArm(), {{"M", 3, {0, 0, 0}}}, {}, {.torsion = {1}});
   const Geometry geometry = ApplyErrors(model, Errors(model, {{"elbow.compliance_z", 0.5}}));
   JointLoads loads = JointLoads::Zero(3, 2);
@@ -36,17 +36,19 @@ TEST(ElasticKinematics, TorsionByHandTurnsWithTheLoad) {
 }
 
 TEST(ElasticKinematics, BendingByHandTurnsAboutThePhysicalCentre) {
-  // The elbow's common normal is at the shoulder's height, its URDF origin 0.2 m above on the axis.
+  // The common normal meets the elbow's axis at the height of the shoulder. The URDF origin is 0.2
+  // m above.
   RobotTree tree = MakeRoot();
   const int upper = AddJoint(tree, "shoulder", 0, Transform::Identity(), {0, 0, 1});
   const int lower = AddJoint(tree, "elbow", upper, Offset(0.5, 0, 0.2), {0, 0, 1});
   const ErrorModel model = MakeErrorModel(
       tree, {{"M", lower, {0.3, 0, 0}}, {"C", lower, {0, 0, 0}}}, {}, {.bending = {1}});
-  // Twisted axes of the elbow: z along its axis, x along the common normal, the root's x.
+  // The twisted axes of the elbow have z along its axis and x along the common normal, which is the
+  // root's x.
   const Geometry geometry = ApplyErrors(
       model, Errors(model, {{"elbow.compliance_x", 0.1}, {"elbow.compliance_y", 0.25}}));
   JointLoads loads = JointLoads::Zero(3, 2);
-  loads(1, 1) = 2.0 * M_PI;  // a quarter of a turn about y: x goes down
+  loads(1, 1) = 2.0 * M_PI;  // a quarter of a turn about y turns x downwards
   const Eigen::Matrix3Xd p = MarkerPositions(model, geometry, Eigen::Vector2d::Zero(), loads);
   EXPECT_LT((p.col(0) - Vector3d(0.5, 0, 0.2 - 0.3)).norm(), 1e-15);
   EXPECT_LT((p.col(1) - Vector3d(0.5, 0, 0.2)).norm(), 1e-15);
@@ -62,7 +64,7 @@ TEST(ElasticKinematics, TheRootLinkTurnsByHandAboutItsOriginAndForOneLimbAlone) 
       model, Errors(model, {{"left.compliance_root_x", 0.25}, {"right.compliance_root_y", 0.25}}));
   JointLoads loads = JointLoads::Zero(3, 2);
   loads.about_root.setZero(3, 2);
-  loads.about_root(0, 0) = 2.0 * M_PI;  // a quarter of a turn about x: y goes to z, z to -y
+  loads.about_root(0, 0) = 2.0 * M_PI;  // a quarter of a turn about x turns y to z and z to -y
   const Eigen::Matrix3Xd p = MarkerPositions(model, geometry, Eigen::Vector2d::Zero(), loads);
   EXPECT_LT((p.col(0) - Vector3d(0, 0.2, 0.1)).norm(), 1e-15);
   EXPECT_LT((p.col(1) - Vector3d(0, -0.1, -0.2)).norm(), 1e-15);
@@ -78,7 +80,7 @@ TEST(ElasticKinematics, ASlidingJointGivesWayAlongItsAxis) {
   EXPECT_LT((p.col(0) - Vector3d(0.1, 0, 0.38)).norm(), 1e-15);
 }
 
-/// A random robot with everything elastic, two legs and loads of up to some 100 N.m.
+/// A random robot with all parts elastic, two legs, and loads of up to some 100 N.m.
 struct ElasticRobot {
   explicit ElasticRobot(int seed) : random(seed) {
     const RobotTree tree = RandomRobot(kUsualRelations, random);
@@ -117,8 +119,8 @@ struct ElasticRobot {
   Eigen::VectorXd delta, q;
 };
 
-/// Pose of a body with the elastic rotation as the formula has it: on the joint's fixed side, about
-/// the origin of the calibrated URDF joint.
+/// Pose of a body with the elastic rotation of the formula: on the joint's fixed side, about the
+/// origin of the calibrated URDF joint.
 Transform BodyByTheFormula(const ElasticRobot& robot, const std::vector<Transform>& rigid,
                            int body) {
   if (body == 0) return rigid[0];
@@ -146,7 +148,7 @@ Transform BodyByTheFormula(const ElasticRobot& robot, const std::vector<Transfor
   const Vector3d phi = c.cwiseProduct(robot.loads.col(k));
   Transform T_ref_body = T_ref_rigid;
   if (revolute) {
-    // The body's frame has its origin at the centre: that stays.
+    // The origin of the body's frame is the centre of rotation, so it stays.
     T_ref_body.linear() =
         R_ref_twisted * RotationFromVector(phi) * R_ref_twisted.transpose() * T_ref_rigid.linear();
   } else {
@@ -164,7 +166,8 @@ TEST_P(ElasticRandomRobots, BodiesAreWhereTheFormulaPutsThem) {
   const auto elastic = BodyTransforms(robot.model, geometry, robot.q, robot.loads);
   for (int k : robot.model.active_joints) {
     const Transform expected = BodyByTheFormula(robot, rigid, k + 1);
-    // Turns there and back along up to nine joints; a wrong centre or axis would show by 1e-3.
+    // The rotations go there and back along up to nine joints. A wrong centre or axis would change
+    // the result by 1e-3.
     EXPECT_LT((elastic[k + 1].matrix() - expected.matrix()).norm(), 1e-10) << k;
   }
 }
@@ -186,7 +189,8 @@ TEST_P(ElasticRandomRobots, WithoutLoadsOrComplianceTheyAreRigid) {
 
 using LoadsOfRootJoints = GeneralizedJacobian::LoadsOfRootJoints;
 
-/// Markers, then the feet, each as four points: what the differences are taken of.
+/// Positions of the markers, then of the feet as four points each. The differences are taken of
+/// these.
 Eigen::VectorXd Points(const ElasticRobot& robot, const Eigen::VectorXd& delta,
                        LoadsOfRootJoints root_joints) {
   const Geometry geometry = ApplyErrors(robot.model, delta);
@@ -212,8 +216,8 @@ void ExpectDerivatives(const ElasticRobot& robot, LoadsOfRootJoints root_joints)
   const Eigen::MatrixXd J = jacobian.Dense();
   for (int i = 0; i < model.parameter_count(); ++i) {
     const bool compliance = IsCompliance(model.parameters[i].kind);
-    // A step of 2e-7 rad/(N.m) turns a joint by some 2e-5 rad. Differences of fourth order: what
-    // its square leaves differs from robot to robot.
+    // A step of 2e-7 rad/(N.m) turns a joint by some 2e-5 rad. The differences are of fourth order,
+    // because the error of second order is too large for some robots.
     const double step = compliance ? 2e-7 : 1e-5;
     const auto at = [&](double steps) {
       Eigen::VectorXd beside = robot.delta;
@@ -264,7 +268,7 @@ TEST_P(ElasticRandomRobots, LegPosesAreThoseOfTheirLinks) {
 INSTANTIATE_TEST_SUITE_P(Seeds, ElasticRandomRobots, testing::Range(1, 31));
 
 TEST(ElasticKinematics, DerivativesByComplianceAreThereWhileItIsZero) {
-  // The elbow's load lifts the tip: 0.3 m times 10 N.m.
+  // The elbow's load lifts the tip by 0.3 m times 10 N.m times the compliance.
   const ErrorModel model = MakeErrorModel(PlanarArm(), {{"M", 3, {0, 0, 0}}}, {}, {.torsion = {1}});
   GeneralizedJacobian jacobian(model);
   JointLoads loads = JointLoads::Zero(3, 2);

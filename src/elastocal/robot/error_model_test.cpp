@@ -68,7 +68,7 @@ TEST(ErrorModel, RefusesDuplicateNamesAndStrangeLinks) {
   EXPECT_THROW(MakeErrorModel(PlanarArm(), {{"A", -1, {}}}), std::invalid_argument);
 }
 
-/// The planar arm as a leg with everything elastic.
+/// The planar arm as a leg with all parts elastic.
 ErrorModel ElasticArm(std::vector<Marker> markers) {
   return MakeErrorModel(
       PlanarArm(), std::move(markers), {},
@@ -137,7 +137,7 @@ TEST(ErrorModel, SlidingJointsGiveWayInMetres) {
   };
   EXPECT_EQ(unit("rail.compliance_z"), "m/N");
   EXPECT_EQ(unit("rail.torque_bias"), "N");
-  // One sensor, two legs.
+  // The two legs have the same sensor.
   EXPECT_EQ(MatchParameters(model.parameters, {"rail.torque_bias"}).size(), 1u);
 }
 
@@ -147,7 +147,7 @@ TEST(ErrorModel, RefusesImpossibleElasticity) {
   };
   EXPECT_THROW(make({.torsion = {7}}), std::invalid_argument);
   EXPECT_THROW(make({.bending = {-1}}), std::invalid_argument);
-  EXPECT_THROW(make({.bending = {0}}), std::invalid_argument);  // slides
+  EXPECT_THROW(make({.bending = {0}}), std::invalid_argument);  // this joint slides
   EXPECT_THROW(make({.legs = {{"a", 3}, {"a", 4}}}), std::invalid_argument);
   EXPECT_THROW(make({.legs = {{"a", 0}}}), std::invalid_argument);
   EXPECT_THROW(make({.legs = {{"a", 99}}}), std::invalid_argument);

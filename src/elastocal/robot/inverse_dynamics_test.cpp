@@ -30,7 +30,7 @@ RobotState AtRest(const Eigen::VectorXd& q) {
 }
 
 TEST(InverseDynamics, PendulumByHand) {
-  // 2 kg at 0.5 m, turning about y from hanging along x, at 3 rad/s and 4 rad/s^2.
+  // A mass of 2 kg at 0.5 m along x, which turns about y at 3 rad/s and 4 rad/s^2.
   RobotTree tree = MakeRoot();
   const int link = AddJoint(tree, "joint", 0, Transform::Identity(), {0, 1, 0});
   tree.links[link].mass = 2.0;
@@ -39,9 +39,9 @@ TEST(InverseDynamics, PendulumByHand) {
   state.velocity[0] = 3.0;
   state.acceleration[0] = 4.0;
   const auto found = InverseDynamics(tree, BodyInertias(tree), state, {0, 0, -10});
-  // About y, positive is down: gravity helps with 2 * 10 * 0.5, inertia wants 2 * 0.5^2 * 4.
+  // Positive is downwards about y: gravity helps with 2 * 10 * 0.5, inertia needs 2 * 0.5^2 * 4.
   EXPECT_NEAR(found.torques[0], 2.0 - 10.0, 1e-14);
-  // Towards the axis 2 * 0.5 * 9; downwards 2 * 0.5 * 4 less than the weight.
+  // The force is 2 * 0.5 * 9 towards the axis, and 2 * 0.5 * 4 less than the weight upwards.
   EXPECT_LT((found.force - Vector3d(-9.0, 0.0, 20.0 - 4.0)).norm(), 1e-14);
 }
 
@@ -54,10 +54,10 @@ TEST(InverseDynamics, AtRestIsStatics) {
     const Vector3d gravity = random.NormalVector(3, 6.0);
     const auto inertias = BodyInertias(tree);
     const auto held = InverseDynamics(tree, inertias, AtRest(q), gravity);
-    // Some hundred N.m: rounding near 1e-13.
+    // Torques are some hundred N.m, and rounding is about 1e-13.
     EXPECT_LT((held.torques - GravityTorques(tree, q, gravity)).norm(), 1e-10);
     EXPECT_LT((held.com - CentreOfMass(tree, inertias, q)).norm(), 1e-12);
-    // Standing on any link: the floor's wrench is all that there is.
+    // If the robot stands on this link, the wrench of the floor is the only one.
     const int foot = random.Index(static_cast<int>(tree.links.size()));
     const auto standing =
         InverseDynamics(tree, inertias, AtRest(q), gravity, {{foot, held.force, held.moment}});
@@ -67,8 +67,8 @@ TEST(InverseDynamics, AtRestIsStatics) {
 }
 
 TEST(InverseDynamics, PowerIsTheChangeOfEnergy) {
-  // A floating robot without gravity that nobody touches keeps its momentum; moved by the wrench on
-  // its root and by its motors, its energy changes by their power.
+  // A floating robot without gravity and contact keeps its momentum. If a wrench on its root and
+  // its motors move it, they change its energy by their power.
   Random random(4);
   RobotTree tree = RandomRobot(kUsualRelations, random);
   GiveInertias(tree, random);
@@ -76,7 +76,7 @@ TEST(InverseDynamics, PowerIsTheChangeOfEnergy) {
   RobotState state = AtRest(RandomPosture(tree, random));
   state.velocity = random.NormalVector(state.q.size(), 1.0);
   state.acceleration = random.NormalVector(state.q.size(), 3.0);
-  // M(q) column by column from unit accelerations, energy 1/2 v' M v at two instants.
+  // Column by column, unit accelerations give M(q) and so the energy 1/2 v' M v at two instants.
   const auto energy = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
     Eigen::VectorXd momentum(q.size());
     for (Eigen::Index i = 0; i < q.size(); ++i) {
@@ -93,7 +93,7 @@ TEST(InverseDynamics, PowerIsTheChangeOfEnergy) {
   };
   const double power =
       state.velocity.dot(InverseDynamics(tree, inertias, state, Vector3d::Zero()).torques);
-  // Some 100 J and W: rounding 1e-14 over the step leaves 1e-7, the step's square less.
+  // Energies are some 100 J. Rounding of 1e-14 over the step leaves 1e-7, truncation leaves less.
   EXPECT_NEAR((after(step) - after(-step)) / (2 * step), power, 1e-5 * (1.0 + std::abs(power)));
 }
 

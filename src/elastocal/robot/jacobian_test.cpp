@@ -15,8 +15,8 @@ namespace {
 /// Central differences of all marker positions, 3 N_M x parameters.
 Eigen::MatrixXd Differences(const ErrorModel& model, const Eigen::VectorXd& delta,
                             const Eigen::VectorXd& q) {
-  // On the scale of a metre and a radian the step's third power 1e-15 and the rounding of
-  // positions 1e-15, over the step, leave 1e-10.
+  // Lengths are about a metre and angles about a radian. Truncation (the step's third power, 1e-15)
+  // and rounding (1e-15), both over the step, leave 1e-10.
   const double step = 1e-5;
   Eigen::MatrixXd J(3 * model.marker_count(), model.parameter_count());
   for (int i = 0; i < model.parameter_count(); ++i) {
@@ -31,7 +31,7 @@ Eigen::MatrixXd Differences(const ErrorModel& model, const Eigen::VectorXd& delt
   return J;
 }
 
-/// Compares column by column, each relative to its own norm.
+/// Compares column by column, relative to the norm of each.
 void ExpectDerivatives(const ErrorModel& model, const Eigen::VectorXd& delta,
                        const Eigen::VectorXd& q) {
   GeneralizedJacobian jacobian(model);
@@ -71,9 +71,9 @@ TEST_P(JacobianOfRandomRobots, BlocksColumnsAndDenseAreOne) {
 
   const Eigen::MatrixXd J = jacobian.Dense();
   for (int m = 0; m < model.marker_count(); ++m) {
-    // The same operations in another order, lengths of metres.
+    // The operations are the same in another order, with lengths of metres.
     EXPECT_LT((jacobian.Position(m) - positions.col(m)).norm(), 1e-13);
-    // T0, the joints on the way to the marker, and its own position.
+    // The marker depends on T0, on the joints on the way to it, and on its own position.
     std::set<int> carriers;
     for (int k : JointsToBody(tree, tree.links[model.markers[m].link].body)) carriers.insert(k);
     std::vector<int> columns;
@@ -123,7 +123,7 @@ TEST(Jacobian, TalosLegAndRailArm) {
 }
 
 TEST(Jacobian, PlanarArmByHand) {
-  // Upper arm along x, forearm along y: the tip is at (0.5, 0.3).
+  // The upper arm is along x and the forearm along y, so the tip is at (0.5, 0.3).
   const ErrorModel model = MakeErrorModel(PlanarArm(), {{"M", 3, {0, 0, 0}}});
   GeneralizedJacobian jacobian(model);
   jacobian.Evaluate(ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count())),

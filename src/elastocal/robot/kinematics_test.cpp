@@ -12,7 +12,7 @@
 namespace elastocal {
 namespace {
 
-// Roundings along up to nine joints, some with common normals of 10 m.
+// Accumulated rounding along up to nine joints, some with common normals of 10 m.
 constexpr double kKinematicsRounding = 1e-13;
 
 /// Value of the error called `name`; zero where the model has none.
@@ -23,7 +23,7 @@ double Error(const ErrorModel& model, const Eigen::VectorXd& delta, const std::s
   return 0.0;
 }
 
-/// Pose of a body by eq. 1 to 3 as they are printed, errors taken by their names.
+/// Pose of a body by eq. 1 to 3 as they are printed, with errors taken by their names.
 Transform BodyByTheFormulas(const ErrorModel& model, const Eigen::VectorXd& delta,
                             const Eigen::VectorXd& q, int body) {
   if (body == 0) {
@@ -38,7 +38,7 @@ Transform BodyByTheFormulas(const ErrorModel& model, const Eigen::VectorXd& delt
   const auto e = [&](const char* name) { return Error(model, delta, joint.name + "." + name); };
   const double position = JointPosition(joint, q);
   const double angle = joint.type == JointType::kRevolute ? position : 0.0;
-  // The parent's MDH frame: its body frame is T_joint_body further on.
+  // The parent's MDH frame is reached from its body frame by the inverse of T_joint_body.
   Transform T = BodyByTheFormulas(model, delta, q, joint.parent_body);
   if (joint.parent_body > 0) {
     T = T * model.placements[joint.parent_body - 1].T_joint_body.inverse();
@@ -58,7 +58,7 @@ Eigen::Vector3d MarkerByTheFormulas(const ErrorModel& model, const Eigen::Vector
   return BodyByTheFormulas(model, delta, q, link.body) * link.T_body_link * p;
 }
 
-/// A random robot seen from somewhere, and an error for each of its parameters.
+/// A random robot at a random place, with an error for each of its parameters.
 struct RandomModel {
   explicit RandomModel(int seed) : random(seed) {
     const RobotTree tree = RandomRobot(kUsualRelations, random);
@@ -84,7 +84,7 @@ TEST(Kinematics, PlanarArmByHand) {
 }
 
 TEST(Kinematics, WaistErrorsAreSixIndependentDisplacements) {
-  // Gamma and b about and along z, alpha and d about and along x, theta and r about and along the
+  // Gamma and b turn about and move along z, alpha and d along x, theta and r along the
   // intermediate z, which is -y of the waist.
   const ErrorModel model = MakeErrorModel(MakeRoot(), {{"M", 0, {0.1, 0.2, 0.3}}});
   const double e = 1e-6;
@@ -95,7 +95,7 @@ TEST(Kinematics, WaistErrorsAreSixIndependentDisplacements) {
     delta[i] = e;
     const Eigen::Vector3d moved =
         MarkerPositions(model, ApplyErrors(model, delta), Eigen::VectorXd());
-    // The rest is of second order, e^2 = 1e-12.
+    // The remainder is of second order, e^2 = 1e-12.
     EXPECT_LT((moved - p - e * displacements[i]).norm(), 1e-12) << model.parameters[i].name;
   }
 }
@@ -136,7 +136,7 @@ TEST_P(KinematicsOfRandomRobots, ErrorsGoWhereTheFormulasPutThem) {
 }
 
 TEST_P(KinematicsOfRandomRobots, LinksOffTheChainsAreCarriedAtTheirPositions) {
-  // Of two models of one robot, the one with a marker on one body alone has the other links too.
+  // A model with a marker on one body alone still places all other links.
   RandomModel m(GetParam());
   const ErrorModel part =
       MakeErrorModel(m.model.tree, {{"M", m.random.Index(m.model.tree.body_count()), {0, 0, 0}}});

@@ -17,7 +17,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The TALOS leg under a waist of 60 kg with a payload on an arm; its links weigh `leg_mass` each.
+/// The TALOS leg under a waist of 60 kg with a payload on an arm. Each link of the leg weighs
+/// `leg_mass`.
 ErrorModel Humanoid(double leg_mass) {
   RobotTree tree = TalosLeg();
   for (int i = 1; i <= 6; ++i) {
@@ -45,7 +46,7 @@ Geometry Nominal(const ErrorModel& model) {
   return geometry;
 }
 
-/// Torques of the leg's joints by statics with its sole on the floor.
+/// Torques of the leg's joints by statics, with its sole on the floor.
 Eigen::VectorXd StandingTorques(const ErrorModel& model, const LegPosture& posture,
                                 const Vector3d& gravity_ref) {
   const Vector3d gravity_waist = posture.T_ref_link[0].linear().transpose() * gravity_ref;
@@ -71,7 +72,7 @@ TEST(LegPosture, JacobianAgreesWithDifferences) {
       const Eigen::Matrix<double, 3, 4> slope =
           (forward.matrix() - backward.matrix()).topRows<3>() / (2.0 * step);
       const Vector6d motion = posture.J_waist_q.col(static_cast<Eigen::Index>(k));
-      // The step's square 1e-10; lengths of up to some ten metres.
+      // The step's square is 1e-10, and lengths are up to some ten metres.
       EXPECT_LT((slope.col(3) - motion.head<3>()).norm(), 1e-8);
       EXPECT_LT(
           (slope.leftCols<3>() - Skew(motion.tail<3>()) * posture.T_foot_waist.linear()).norm(),
@@ -81,19 +82,19 @@ TEST(LegPosture, JacobianAgreesWithDifferences) {
 }
 
 TEST(LegLoad, OfALeverByHand) {
-  // A column of one hinge about y at the foot: its torque is the moment of what stands on top,
-  // all that it feels of it. The least wrench with that moment about the foot is a moment and a
-  // force at the waist, 0.8 m above, in the ratio of their levers.
+  // A column on one hinge about y at its foot. The hinge's torque is the moment of what stands on
+  // it, and that moment is all that it shows. Of the wrenches at the waist, 0.8 m above, that have
+  // this moment, the least is a moment and a force in the ratio of their levers.
   RobotTree tree = MakeRoot();
   AddJoint(tree, "ankle", 0, Offset(0, 0, -0.8), {0, 1, 0});
   const ErrorModel model = MakeErrorModel(tree, {}, {}, {.legs = {{"leg", 1}}});
   const LegPosture posture = PlaceLeg(model, Nominal(model), Eigen::VectorXd::Zero(1), 0);
   Vector6d motion;
-  motion << -0.8, 0, 0, 0, -1, 0;  // foot forwards and up is waist back and nose up
+  motion << -0.8, 0, 0, 0, -1, 0;  // foot forwards and up: waist back and nose up
   EXPECT_LT((posture.J_waist_q.col(0) - motion).norm(), 1e-15);
   const LegLoad load =
       LoadFromTorques(posture, Eigen::VectorXd::Constant(1, 20.0), {.length_scale = 0.4});
-  // tau = 0.8 F_x + M_y with the least (0.4 F_x)^2 + M_y^2: 0.4 F_x = 2 M_y, so 5 M_y = 20.
+  // tau = 0.8 F_x + M_y. The least (0.4 F_x)^2 + M_y^2 has 0.4 F_x = 2 M_y, so 5 M_y = 20.
   Vector6d expected;
   expected << 20, 0, 0, 0, 4, 0;
   EXPECT_LT((load.wrench - expected).norm(), 1e-12);
@@ -111,7 +112,7 @@ TEST(LegLoad, AllSourcesAgreeWithoutMassInTheLeg) {
   EXPECT_LT((load.wrench - statics).norm(), 1e-10);
   EXPECT_NEAR(statics.head<3>().norm(), 68.0 * 9.81, 1e-10);
 
-  // The floor's reaction is the weight, upwards, where the whole centre of mass is.
+  // The floor's reaction is the weight, upwards, at the centre of mass of the whole robot.
   const Transform& T_ref_ankle = posture.T_ref_link[6];
   Vector3d moment = Vector3d::Zero();
   for (int link : {0, 7}) {
@@ -126,7 +127,7 @@ TEST(LegLoad, AllSourcesAgreeWithoutMassInTheLeg) {
 }
 
 TEST(LegLoad, PushesTheWaistDown) {
-  // Level sole: the load is weight along -z of the foot, and the waist sinks.
+  // The sole is level: the load is the weight along -z of the foot, and the waist sinks.
   const ErrorModel model = Humanoid(0.0);
   Geometry geometry = Nominal(model);
   const LegPosture before = PlaceLeg(model, geometry, BentKnee(), 0);
@@ -152,11 +153,11 @@ TEST(LegLoad, TheLegsOwnWeightIsALoadUnlessItIsTakenOff) {
   const Eigen::VectorXd own = LegWeightTorques(model, posture, gravity);
   EXPECT_LT((LoadFromTorques(posture, torques - own).wrench - statics).norm(), 1e-10);
   EXPECT_GT((raw - statics).norm(), 1.0);
-  EXPECT_EQ(own[0], 0.0);  // no link between the first joint and the waist
+  EXPECT_EQ(own[0], 0.0);  // there is no link between the first joint and the waist
 }
 
-// Two legs under a pelvis that turns beneath the waist: the leg in the air is carried, though it
-// hangs on a joint of the leg that stands.
+// The two legs are under a pelvis that turns beneath the waist. The lifted leg is carried, though
+// it hangs on a joint of the standing leg.
 TEST(LegLoad, AnotherLegBehindASharedJointIsCarried) {
   RobotTree tree = MakeRoot();
   tree.links[0].mass = 40.0;
@@ -197,7 +198,7 @@ TEST(LegLoad, AForceSensorCarriesTheLinksAboveIt) {
   const Vector3d gravity(1, -2, -9);
   const LegPosture posture = PlaceLeg(model, Nominal(model), BentKnee(), 0);
   for (int sensor : {1, 4, 6, 8}) {
-    // What holds the robot up: all bodies but that of the sensor and those beyond.
+    // The wrench at the sensor holds up all bodies except that of the sensor and those beyond it.
     const int first_below = std::min(sensor, 6);
     const Transform& T_ref_sensor = posture.T_ref_link[sensor];
     Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
@@ -234,7 +235,7 @@ TEST(LegLoad, BendsTheRootLinkAsStaticsSays) {
         LoadPosture(model, geometry, BentKnee(), 0, measured, gravity, {.source = source});
     EXPECT_LT((loads.joints.about_root - statics.about_root).norm(), 1e-10);
   }
-  // A motion asks more of the standing leg than its weight does, and bends the root link more.
+  // A motion loads the standing leg more than its weight does, and bends the root link more.
   measured.torques *= 1.5;
   const PostureLoads more = LoadPosture(model, geometry, BentKnee(), 0, measured, gravity, {});
   EXPECT_GT((more.joints.about_root.col(0) - statics.about_root.col(0)).norm(), 1.0);
@@ -270,7 +271,7 @@ TEST(LegLoad, AMissingTorqueMakesItIncomplete) {
   EXPECT_TRUE(load.wrench_by_torque.allFinite());
 }
 
-/// Rows: translation, rotation, as in WaistDeflection.
+/// The first three rows are the translation, the others the rotation, as in WaistDeflection.
 Vector6d Motion(const Transform& from, const Transform& to) {
   Vector6d motion;
   const Eigen::Matrix3d S = (to.linear() - from.linear()) * from.linear().transpose();
@@ -299,7 +300,8 @@ TEST(WaistDeflection, DerivativesAgreeWithDifferences) {
     const Vector6d e = Vector6d::Unit(i);
     const Vector6d by_compliance =
         slope([&](double h) { return at(compliance + h * e, load.wrench); }, 1e-7);
-    // Rotations of 1e-5 a step: squares 1e-10, rounding 1e-16 over it, relative; wrench of 700.
+    // A step rotates by 1e-5: relative to the wrench of 700, its square is 1e-10 and rounding over
+    // it 1e-11.
     EXPECT_LT((by_compliance - deflection.by_compliance.col(i)).norm(), 1e-9 * 700) << i;
     const Vector6d by_wrench =
         slope([&](double h) { return at(compliance, load.wrench + h * e); }, 0.1);
@@ -318,7 +320,7 @@ TEST(WaistDeflection, TurnsAboutTheWaistInFootAxes) {
   const Transform T_foot_waist = FromXyzRpy({0.1, 0.2, 0.9}, {0, 0, M_PI / 2});
   const Transform T = DeflectWaist(T_foot_waist, compliance, wrench).T_foot_waist;
   EXPECT_EQ(T.translation(), T_foot_waist.translation());
-  // The waist's y is the foot's -x; turned about y, x goes to -z.
+  // The waist's y is the foot's -x. A turn about y brings x to -z.
   EXPECT_LT((T.linear().col(1) - Vector3d(0, 0, 1)).norm(), 1e-15);
 }
 

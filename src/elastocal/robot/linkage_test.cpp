@@ -19,7 +19,7 @@ const std::vector<RodQuantity> kAll = {
 const std::vector<RodQuantity> kOfActuator = {RodQuantity::kLength, RodQuantity::kAnchorX,
                                               RodQuantity::kCentreZ};
 
-/// The leg with every quantity of every rod uncertain.
+/// The leg with all quantities of all rods uncertain.
 RobotTree UncertainLeg() {
   RobotTree tree = LinkedLeg();
   for (Linkage& linkage : tree.linkages) {
@@ -37,8 +37,8 @@ Eigen::VectorXd SomeErrors(const Linkage& linkage, std::uint64_t seed) {
   return Random(seed).NormalVector(linkage.error_count(), 1e-3);
 }
 
-// Crank as long as the lever, rod as long as the axes are apart: a parallelogram, in which the
-// joint turns as the motor does.
+// The crank is as long as the lever and the rod as the distance of the axes. In this parallelogram,
+// the joint turns like the motor.
 TEST(Linkage, OfAParallelogramTurnsAsTheMotor) {
   RobotTree tree = LinkedLeg(false);
   Rod rod;
@@ -75,7 +75,8 @@ TEST(Linkage, MotorsAndJointsBelongToEachOther) {
   }
 }
 
-// By differences over 2e-6, whose square times the third derivative (some 1e3) is 4e-9.
+// The differences are over 2e-6. Their error is the step's square times the third derivative (some
+// 1e3), so 4e-9.
 TEST(Linkage, DerivativesAreThoseOfDifferences) {
   constexpr double kStep = 1e-6;
   const RobotTree tree = UncertainLeg();
@@ -104,8 +105,8 @@ TEST(Linkage, DerivativesAreThoseOfDifferences) {
   }
 }
 
-// The generalized Jacobian of all markers, also of those between the joints of a linkage, whose
-// second joint does not move them.
+// The generalized Jacobian of all markers, including one between the joints of a linkage, which the
+// second of these joints does not move.
 TEST(Linkage, MarkersMoveByItsErrors) {
   constexpr double kStep = 1e-6;
   const RobotTree tree = UncertainLeg();
@@ -170,7 +171,7 @@ TEST(Linkage, SaysWhatDoesNotFit) {
   ExpectInputError([&] { AddLinkage(ankle, twice); }, {"'ankle_pitch' belongs to linkage 'ankle'"});
 }
 
-// Far beyond what the rods allow there is no answer, and no nonsense either.
+// Far beyond the reach of the rods, there is no answer rather than a wrong one.
 TEST(Linkage, DoesNotCloseOutOfReach) {
   const RobotTree tree = LinkedLeg();
   const Linkage& ankle = tree.linkages[1];

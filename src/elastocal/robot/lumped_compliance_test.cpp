@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTorsion = 2e-5;  // rad/(N.m)
 
-/// A thigh of 0.4 m that hangs from a hip about y, with a foot at its end: the waist stands on it.
+/// A thigh of 0.4 m hangs from a hip about y. The foot at its end carries the waist.
 ErrorModel Pendulum() {
   RobotTree tree = MakeRoot();
   AddJoint(tree, "hip", 0, Offset(0, 0, 0), {0, 1, 0});
@@ -20,7 +20,7 @@ ErrorModel Pendulum() {
       tree, {}, {}, {.torsion = {0}, .bending = {0}, .root_bending = {0}, .legs = {{"leg", 2}}});
 }
 
-// The hip is in the waist's origin: a force there does not bend it, a moment about y turns it.
+// The hip is in the waist's origin. A force there does not bend it, and a moment about y turns it.
 TEST(LumpedCompliance, OfALegByHand) {
   const ErrorModel model = Pendulum();
   Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
@@ -36,7 +36,7 @@ TEST(LumpedCompliance, OfALegByHand) {
   EXPECT_LT((compliance - expected).norm(), 1e-18);
 }
 
-// A wrench on the waist of the TALOS leg, and how far the loaded kinematics move it.
+// A wrench on the waist of the TALOS leg must move it as far as the loaded kinematics do.
 TEST(LumpedCompliance, IsWhatLoadedKinematicsDo) {
   RobotTree tree = TalosLeg();
   AddFixedLink(tree, "sole", 6, Offset(0, 0, -0.1));
@@ -54,7 +54,7 @@ TEST(LumpedCompliance, IsWhatLoadedKinematicsDo) {
   const LegPosture rigid = PlaceLeg(model, geometry, q, 0);
   const Matrix6d compliance = LumpedCompliance(model, geometry, q, 0);
   for (int i = 0; i < 6; ++i) {
-    // The motors balance the wrench: tau = -J^T F; the load about their axes is the opposite.
+    // The motors balance the wrench, tau = -J^T F. The load about their axes is the opposite.
     const Vector6d wrench = Vector6d::Unit(i);
     JointLoads loads = JointLoads::Zero(3, 6);
     loads.row(2) = (rigid.J_waist_q.transpose() * wrench).transpose();
@@ -63,7 +63,7 @@ TEST(LumpedCompliance, IsWhatLoadedKinematicsDo) {
     motion.head<3>() = loaded.T_foot_waist.translation() - rigid.T_foot_waist.translation();
     motion.tail<3>() =
         RotationVector(loaded.T_foot_waist.linear() * rigid.T_foot_waist.linear().transpose());
-    // Second order in rotations of 1e-5.
+    // The remainder is of second order in rotations of 1e-5.
     EXPECT_LT((motion - compliance * wrench).norm(), 1e-9) << i;
   }
 }

@@ -11,11 +11,11 @@ namespace elastocal {
 namespace {
 
 constexpr double kStep = 1e-6;
-// Central differences of smooth functions of order one (m, rad): 1e-12 of truncation, 1e-10 of
-// rounding. Torques reach 100 N.m.
+// Central differences of smooth functions of order one (m, rad) have 1e-12 of truncation and 1e-10
+// of rounding. Torques reach 100 N.m.
 constexpr double kNear = 1e-8, kNearTorque = 1e-6;
 
-/// A random robot with masses and a joint that follows another.
+/// A random robot with masses, one joint of which follows another.
 RobotTree LoadedRobot(Random& random) {
   RobotTree tree = RandomRobot(kUsualRelations, random);
   const int last = static_cast<int>(tree.links.size()) - 1;
@@ -92,7 +92,7 @@ TEST_P(MovingChainOfRandomRobot, TorquesAreThoseOfStatics) {
 
 TEST_P(MovingChainOfRandomRobot, LoadGradientEqualsDifferences) {
   const Eigen::Vector3d gravity(1.0, -2.0, -9.0), point(0.1, 0.2, -0.3), direction(0.5, -0.7, 0.4);
-  // One component a joint, fixed to the link before it, and one of the whole robot.
+  // One component for each joint, fixed to the link before it, and one for the whole robot.
   const auto components = [&] {
     std::vector<LoadComponent> all = {{-1, point, direction}};
     for (std::size_t k = 0; k < tree_.joints.size(); ++k) {
@@ -146,7 +146,7 @@ TEST(SphereDistances, AreBetweenSurfaces) {
   const std::vector<CollisionSphere> spheres = {{"low", 0, {0.3, 0, 0}, 0.1},
                                                 {"high", 1, {0.3, 0.4, 0}, 0.2}};
   const std::vector<Transform> poses = LinkTransforms(tree, Eigen::VectorXd::Zero(1));
-  // Centres (0.3, 0, 0) and (0.3, 0.4, 1).
+  // The centres are (0.3, 0, 0) and (0.3, 0.4, 1).
   EXPECT_NEAR(SphereDistances(spheres, {{0, 1}}, poses)[0], std::sqrt(1.16) - 0.3, 1e-15);
 }
 

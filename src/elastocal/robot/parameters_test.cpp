@@ -77,7 +77,7 @@ TEST(Parameters, APatternMayMatchNothing) {
 TEST(Parameters, APatternThatMatchesNothingCanBeRefused) {
   ExpectInputError([] { Check({"leg_2.*", "leg_7.*"}); }, {"'leg_7.*' matches no parameter"});
   ExpectInputError([] { Check({"leg_2.thet"}); }, {"'leg_2.thet'", "mean 'leg_2.theta'?"});
-  // Not parts of names, and case counts.
+  // A pattern must match the whole name, and case counts.
   ExpectInputError([] { Check({"leg_2"}); }, {"'leg_2'"});
   ExpectInputError([] { Check({"*.D"}); }, {"'*.D'"});
 }

@@ -18,11 +18,11 @@ TEST(PhysicalInertia, LeavesWhatExistsAsItIs) {
 }
 
 TEST(PhysicalInertia, RaisesTheSmallerMomentsByHalfOfWhatIsMissing) {
-  // (5 - 1 - 2) / 2 = 1 for each.
+  // Each moment must grow by (5 - 1 - 2) / 2 = 1 to make the two smaller ones reach the largest.
   const Eigen::Matrix3d R = (RotX(0.4) * RotZ(-1.1)).linear();
   const Eigen::Matrix3d turned = R * Eigen::Vector3d(5.0, 1.0, 2.0).asDiagonal() * R.transpose();
   const Eigen::Matrix3d expected = R * Eigen::Vector3d(5.0, 2.0, 3.0).asDiagonal() * R.transpose();
-  EXPECT_LT((PhysicalInertia(turned) - expected).norm(), 1e-5);  // a millionth to spare
+  EXPECT_LT((PhysicalInertia(turned) - expected).norm(), 1e-5);  // a margin of a millionth
   const Eigen::Vector3d moments =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(PhysicalInertia(turned)).eigenvalues();
   EXPECT_GT(moments[0] + moments[1], moments[2]);
@@ -39,9 +39,9 @@ TEST(PhysicalInertia, NegativeMomentsBecomePhysical) {
 TEST(PhysicalInertia, WarningsNameTheLink) {
   RobotTree tree = MakeRoot();
   const int link = AddJoint(tree, "joint", 0, Offset(0, 0, 1), {0, 0, 1});
-  EXPECT_EQ(InertiaWarnings(tree).size(), 1U);  // no mass
+  EXPECT_EQ(InertiaWarnings(tree).size(), 1U);  // without mass
   tree.links[static_cast<std::size_t>(link)].mass = 1.0;
-  EXPECT_EQ(InertiaWarnings(tree).size(), 1U);  // no inertia
+  EXPECT_EQ(InertiaWarnings(tree).size(), 1U);  // without inertia
   tree.links[static_cast<std::size_t>(link)].inertia = 0.1 * Eigen::Matrix3d::Identity();
   EXPECT_TRUE(InertiaWarnings(tree).empty());
   tree.links[static_cast<std::size_t>(link)].inertia(2, 2) = 0.3;
@@ -49,7 +49,7 @@ TEST(PhysicalInertia, WarningsNameTheLink) {
   EXPECT_NE(InertiaWarnings(tree)[0].find(tree.links[static_cast<std::size_t>(link)].name),
             std::string::npos);
   tree.links[static_cast<std::size_t>(link)].inertia = 5.0 * Eigen::Matrix3d::Identity();
-  ASSERT_EQ(InertiaWarnings(tree).size(), 1U);  // 1 kg in a robot of 2 m
+  ASSERT_EQ(InertiaWarnings(tree).size(), 1U);  // 1 kg, in a robot of 2 m
   EXPECT_NE(InertiaWarnings(tree)[0].find("wider than the robot"), std::string::npos);
 }
 
@@ -59,7 +59,7 @@ TEST(PhysicalInertia, WarnsOfMassesInGrams) {
       tree.links[static_cast<std::size_t>(AddJoint(tree, "joint", 0, Offset(0, 0, 1), {0, 0, 1}))];
   link.mass = 20.0;
   link.inertia = Eigen::Matrix3d::Identity();
-  tree.links[0].mass = 20e3;  // of a root on the floor, anything
+  tree.links[0].mass = 20e3;  // a root on the floor may weigh anything
   tree.links[0].inertia = 1e3 * Eigen::Matrix3d::Identity();
   EXPECT_TRUE(InertiaWarnings(tree).empty());
   link.mass = 20e3;

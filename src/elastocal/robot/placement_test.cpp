@@ -12,7 +12,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kRightAngle = M_PI / 2.0;
-// Roundings of lengths of a metre. Common normals of axes that are nearly parallel are further out.
+// Rounding of lengths of about a metre. If axes are nearly parallel, common normals are longer.
 constexpr double kPlacementRounding = 1e-14;
 
 std::vector<AxisRelation> AllRelations() {
@@ -21,14 +21,14 @@ std::vector<AxisRelation> AllRelations() {
   return relations;
 }
 
-/// Eq. 1, written out.
+/// Eq. 1 as it is printed.
 Transform Placed(const JointPlacement& p, const Joint& joint, double position) {
   const bool revolute = joint.type == JointType::kRevolute;
   return p.T_parent_pre * RotZ(p.gamma) * TrZ(p.b) * RotY(p.beta) * RotX(p.alpha) * TrX(p.d) *
          RotZ(p.theta + (revolute ? position : 0.0)) * TrZ(p.r + (revolute ? 0.0 : position));
 }
 
-/// Two joints, the second's axis turned by `angle` out of parallel to the first's, 0.4 m beside it.
+/// Two joints 0.4 m apart, whose axes are parallel up to a turn of the second by `angle`.
 RobotTree TwoAxes(double angle, double distance = 0.4) {
   RobotTree tree = MakeRoot();
   const int link = AddJoint(tree, "first", 0, Transform::Identity(), {0, 0, 1});
@@ -51,7 +51,7 @@ TEST(Placement, TalosLeg) {
   const double h = kRightAngle;
   ExpectConstants(leg[0], h, 0, 0, 0);
   ExpectConstants(leg[1], h, 0, h, 0);
-  leg[2].theta = std::abs(leg[2].theta);  // half a turn, either way
+  leg[2].theta = std::abs(leg[2].theta);  // half a turn has two signs
   ExpectConstants(leg[2], h, 0, M_PI, 0);
   ExpectConstants(leg[3], 0, 0.380, 0, 0);
   ExpectConstants(leg[4], 0, 0.325, 0, 0);
@@ -60,18 +60,19 @@ TEST(Placement, TalosLeg) {
     EXPECT_EQ(leg[k].general, k == 0);
     EXPECT_EQ(leg[k].parallel, k == 3 || k == 4);
   }
-  // The general placement is on the hip's axis, with its own z across that.
+  // The general placement has its origin on the hip's axis and its own z at right angles to that.
   EXPECT_LT((leg[0].T_parent_pre.translation() - Eigen::Vector3d(-0.02, 0.085, -0.27105)).norm(),
             kPlacementRounding);
   EXPECT_NEAR(leg[0].T_parent_pre.linear().col(2).z(), 0.0, kPlacementRounding);
 }
 
 TEST(Placement, SkewAxes) {
-  // The common normal is along x, from the first axis to the second, whichever way that is turned.
+  // The common normal is along x, from the first axis to the second, for either direction of the
+  // axes.
   for (double angle : {0.5, -0.5, 2.0}) {
     const std::vector<JointPlacement> arm = PlaceJoints(TwoAxes(angle), {});
     ExpectConstants(arm[1], angle, 0.4, 0, 0);
-    // The first joint's frame is where the normal leaves its axis.
+    // The origin of the first joint's frame is where the normal leaves its axis.
     EXPECT_LT((arm[0].T_parent_pre.translation() - Eigen::Vector3d(0, 0, 0.1)).norm(),
               kPlacementRounding);
   }
@@ -88,8 +89,8 @@ TEST(Placement, BetaBelowTheToleranceOnly) {
   }
 }
 
-// The shoulder of a humanoid, 0.25 m beside an upright waist and inclined to it: the axes meet a
-// metre below, and an error of 10 mrad moves that place by centimetres.
+// The shoulder of a humanoid is 0.25 m beside an upright waist and inclined to it. The axes meet a
+// metre below. An error of 10 mrad moves that point by centimetres.
 TEST(Placement, BetaWhereTheCommonNormalIsFarAway) {
   const auto place = [](double inclined, double beside) {
     RobotTree tree = MakeRoot();
@@ -101,9 +102,9 @@ TEST(Placement, BetaWhereTheCommonNormalIsFarAway) {
   };
   EXPECT_TRUE(place(0.2, 0.25));
   EXPECT_TRUE(place(0.45, 0.25));
-  EXPECT_FALSE(place(0.45, 0.03));  // they meet within 7 cm
+  EXPECT_FALSE(place(0.45, 0.03));  // the axes meet within 7 cm
   EXPECT_FALSE(place(0.6, 0.25));
-  EXPECT_FALSE(place(1.5, 2.0));  // nearly at right angles: far away, but it stays there
+  EXPECT_FALSE(place(1.5, 2.0));  // nearly at right angles: the point is far away but hardly moves
 }
 
 TEST(Placement, TheSameAxisTwiceIsPlacedGenerally) {
@@ -113,8 +114,8 @@ TEST(Placement, TheSameAxisTwiceIsPlacedGenerally) {
   EXPECT_FALSE(PlaceJoints(TwoAxes(0.5, 0.0), {})[1].general);
 }
 
-// Head and arms of a robot with a lift: an axis that is displaced across its distance from the lift
-// is a displacement of this axis alone, not a turn of all that the lift carries.
+// Head and arms of a robot with a lift. An axis is displaced across its distance from the lift.
+// This must move only the axis, and not turn all that the lift carries.
 TEST(Placement, AnAxisParallelToALiftIsPlacedGenerally) {
   const auto place = [](JointType lift, double inclined) {
     RobotTree tree = MakeRoot();
@@ -159,8 +160,8 @@ TEST_P(RandomRobots, NominalPlacementsGiveTheUrdfsKinematics) {
 }
 
 TEST_P(RandomRobots, FramesFollowTheConvention) {
-  // z is the joint's axis. A general joint's constants are nominally zero but for alpha; others
-  // start from the parent's frame itself, and need beta where axes are parallel only.
+  // z is the joint's axis. The constants of a general placement are zero except alpha. Other
+  // placements start from the parent's frame, and need beta only if the axes are parallel.
   Random random(GetParam());
   const RobotTree tree = RandomRobot(AllRelations(), random);
   const std::vector<JointPlacement> placements = PlaceJoints(tree, {});
@@ -175,7 +176,7 @@ TEST_P(RandomRobots, FramesFollowTheConvention) {
       EXPECT_TRUE(p.T_parent_pre.matrix().isIdentity(0.0));
       EXPECT_EQ(p.gamma, 0.0);
       EXPECT_EQ(p.b, 0.0);
-      // Axes that are no further apart coincide, or meet.
+      // Axes that are closer coincide or meet.
       EXPECT_GE(p.d, p.parallel ? 0.02 : -1e-9);
       EXPECT_LE(std::abs(p.beta), p.parallel ? 0.25 * M_PI : 0.0);
     }

@@ -20,7 +20,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(RobotTree, LinkTransformsOfThePlanarArm) {
   const RobotTree tree = PlanarArm();
-  // Upper arm along y, forearm back along x: 90 degrees each.
+  // Both joints turn by 90 degrees: the upper arm is along y, and the forearm points back along x.
   const auto T = LinkTransforms(tree, Eigen::Vector2d(M_PI / 2, M_PI / 2));
   ASSERT_EQ(T.size(), 4u);
   EXPECT_EQ(T[0].matrix(), Transform::Identity().matrix());
@@ -42,7 +42,7 @@ TEST(RobotTree, LinkTransformsOfSlidingAndMimicJoints) {
   const Vector3d rail = T[FindLink(tree, "mount")].linear() * Vector3d(1, 1, 0.2).normalized();
   EXPECT_LT((T[hand].translation() - T_zero[hand].translation() - 0.5 * rail).norm(),
             kTreeRounding);
-  // The leader at 0.03, the mimic at -0.03 + 0.01, in the hand's y.
+  // In the hand's y, the leader is at 0.03 and the mimic joint at -0.03 + 0.01.
   const auto in_hand = [&](const char* link) {
     return Vector3d(T[hand].inverse() * T[FindLink(tree, link)].translation());
   };
@@ -88,7 +88,7 @@ TEST(RobotTree, RandomPosturesFillTheLimits) {
   const Eigen::VectorXd smallest = q.rowwise().minCoeff(), largest = q.rowwise().maxCoeff();
   EXPECT_TRUE((smallest.array() >= lower.array()).all()) << smallest;
   EXPECT_TRUE((largest.array() <= upper.array()).all()) << largest;
-  // 2000 numbers leave 1 % free at an end with probability 0.99^2000 = 2e-9.
+  // With 2000 numbers, the last 1 % at an end remains empty with probability 0.99^2000 = 2e-9.
   const Eigen::VectorXd margin = 0.01 * (upper - lower);
   EXPECT_TRUE((smallest.array() <= (lower + margin).array()).all()) << smallest;
   EXPECT_TRUE((largest.array() >= (upper - margin).array()).all()) << largest;
@@ -112,7 +112,7 @@ TEST(RobotTree, PosturesUseOneTurnOfAJointThatCountsTurns) {
   EXPECT_EQ(PostureRange(joint, 0.0, 9.0), std::pair(10.0 - 2.0 * M_PI, 10.0));
   joint.limits = {-1.0, 3.0, 0, 0};
   EXPECT_EQ(PostureRange(joint, 0.25), std::pair(0.0, 2.0));
-  // A rail of ten metres stays one.
+  // A rail of ten metres keeps its range.
   tree.joints[0].type = JointType::kPrismatic;
   tree.joints[0].limits = {-5.0, 5.0, 0, 0};
   EXPECT_EQ(PostureRange(tree.joints[0]), std::pair(-5.0, 5.0));

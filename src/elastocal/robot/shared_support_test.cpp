@@ -37,7 +37,7 @@ TEST(SharedSupport, MotionOfTheRootAgreesWithDifferences) {
   Random random(1);
   std::vector<StandingFoot> feet = RandomFeet(random);
   const RootOnFeet root = PlaceRootOnFeet(feet);
-  const double step = 1e-5;  // its square and roundings over it leave 1e-10
+  const double step = 1e-5;  // its square, and rounding over it, leave 1e-10
   for (std::size_t f = 0; f < 3; ++f) {
     for (int i = 0; i < 6; ++i) {
       std::vector<StandingFoot> plus = feet;
@@ -76,7 +76,7 @@ TEST(SharedSupport, OneFootWithAllWeightIsTheSupportLegOfStatics) {
   std::vector<StandingFoot> feet(2);
   for (std::size_t i = 0; i < 2; ++i) {
     feet[i].T_root_foot = T[links[i]];
-    feet[i].T_floor_foot = T[links[i]];  // a level root
+    feet[i].T_floor_foot = T[links[i]];  // the root is level
     feet[i].share = i == 0 ? 1.0 : 0.0;
   }
   const JointLoads shared = SharedSupportLoads(model, geometry, q, links, feet);
@@ -86,8 +86,9 @@ TEST(SharedSupport, OneFootWithAllWeightIsTheSupportLegOfStatics) {
 }
 
 TEST(SharedSupport, WeightsSharesOfTheFeet) {
-  // By hand: two vertical legs carry half the weight each; the moment about a hip is that of the
-  // floor's force at the foot, moved by the offset of the centre of mass, less the leg's own.
+  // Two vertical legs carry half the weight each. The moment about a hip is that of the floor's
+  // force at the foot, moved by the offset of the centre of mass, less that of the leg's own
+  // weight.
   const Biped biped = MakeBiped();
   const std::vector<int> links = {FindLink(biped.tree, "left_sole"),
                                   FindLink(biped.tree, "right_sole")};
@@ -104,7 +105,7 @@ TEST(SharedSupport, WeightsSharesOfTheFeet) {
     mass += biped.tree.links[i].mass;
     moment += biped.tree.links[i].mass * (T[i] * biped.tree.links[i].com);
   }
-  // The legs hang under their hips at x = -0.02: their own weight has no moment about y.
+  // The legs hang under their hips at x = -0.02, where their own weight has no moment about y.
   const double ahead = moment.x() / mass + 0.02;
   const int hip = FindJoint(biped.tree, "left_3");
   EXPECT_NEAR(loads(2, hip), -0.5 * mass * 9.81 * ahead, 1e-9);

@@ -11,7 +11,7 @@ namespace {
 using Kind = SpecialGeometry::Kind;
 using Joints = std::vector<int>;
 
-// Roundings of positions and directions of the order of 1.
+// Rounding of positions and directions of order 1.
 constexpr double kGeometryRounding = 1e-15;
 
 std::vector<Joints> Found(const RobotTree& tree, Kind kind) {
@@ -35,8 +35,8 @@ TEST(SpecialGeometry, AntiparallelAxesCount) {
 
 TEST(SpecialGeometry, AWristMeetsAwayFromTheOrigins) {
   RobotTree tree = TalosLeg();
-  tree.joints[1].T_parent_child = Offset(0.1, 0, 0);     // along its own axis
-  tree.joints[2].T_parent_child = Offset(-0.1, 0.2, 0);  // back, then along its own
+  tree.joints[1].T_parent_child = Offset(0.1, 0, 0);     // moves along the joint's own axis
+  tree.joints[2].T_parent_child = Offset(-0.1, 0.2, 0);  // moves back, and then along its own axis
   EXPECT_EQ(Found(tree, Kind::kSphericalWrist), std::vector<Joints>({{0, 1, 2}}));
 }
 
@@ -69,10 +69,10 @@ TEST(SpecialGeometry, DeviationOfACorrectedRobot) {
     EXPECT_LT(Deviation(nominal, group), kGeometryRounding);
     const double deviation = Deviation(corrected, group);
     if (group.kind == Kind::kSphericalWrist) {
-      // Axis 2 passes axis 1 at 3 mm; axis 3 along y meets both.
+      // Axis 2 passes axis 1 at a distance of 3 mm. Axis 3, along y, meets both.
       EXPECT_NEAR(deviation, 0.003, kGeometryRounding);
     } else if (group.joints[1] == 4) {
-      // The ankle's y axis went to Rx Rz y = (-sin .4, cos .4 cos .3, cos .4 sin .3).
+      // The ankle's y axis becomes Rx Rz y = (-sin .4, cos .4 cos .3, cos .4 sin .3).
       EXPECT_NEAR(deviation, std::acos(std::cos(0.4) * std::cos(0.3)), 4 * kGeometryRounding);
     } else {
       EXPECT_LT(deviation, kGeometryRounding);

@@ -27,11 +27,12 @@ TEST(SupportPolygon, OfOneSoleIsItsRectangle) {
 
 TEST(SupportPolygon, OfTwoSolesBridgesTheGap) {
   const Polygon polygon = SupportPolygon({kLeft, kRight}, {Offset(0, 0.1, 0), Offset(0, -0.1, 0)});
-  EXPECT_EQ(polygon.cols(), 4);  // a rectangle: points on its edges are no corners
+  EXPECT_EQ(polygon.cols(), 4);  // a rectangle, since points on an edge are no corners
   EXPECT_NEAR(InsideMargin(polygon, {0.01, 0}), 0.11, 1e-15);
   const Polygon apart = SupportPolygon({kLeft, kRight}, {Offset(0.1, 0.1, 0), Offset(0, -0.1, 0)});
   EXPECT_EQ(apart.cols(), 6);
-  // Through the corners (0.22, 0.05) and (0.12, -0.15), whose line is 1 in 2.
+  // The point is inside the edge through the corners (0.22, 0.05) and (0.12, -0.15), whose slope is
+  // 2.
   EXPECT_NEAR(InsideMargin(apart, {0.17 - 0.01 * std::sqrt(5.0) / 2.0, -0.05}), 0.01, 1e-12);
 }
 
@@ -96,8 +97,8 @@ TEST(ShareWrench, OfFourFeetAddsUpAndNoFootPulls) {
     return wrenches;
   };
   for (const LinkWrench& wrench : share({0, 0, 0})) EXPECT_NEAR(wrench.force.z(), 25.0, 1e-9);
-  // Beyond the middle of two edges the far foot carries nothing: the other three follow from the
-  // lever rule.
+  // Beyond the middle of two edges, the far foot carries nothing. The lever rule gives the loads of
+  // the other three.
   const auto near = share({0.15, 0.06, 0});
   EXPECT_NEAR(near[0].force.z(), 67.5, 1e-9);
   EXPECT_NEAR(near[1].force.z(), 20.0, 1e-9);

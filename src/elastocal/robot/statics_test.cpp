@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Energy that lifting the links against gravity has cost, J.
+/// Energy that it takes to lift the links against gravity, J.
 double PotentialEnergy(const RobotTree& tree, const Eigen::VectorXd& q, const Vector3d& gravity) {
   const std::vector<Transform> T_root_link = LinkTransforms(tree, q);
   double energy = 0.0;
@@ -35,7 +35,7 @@ void ExpectTorquesAreTheSlopeOfEnergy(const RobotTree& tree, const Vector3d& gra
     const double slope =
         (PotentialEnergy(tree, forward, gravity) - PotentialEnergy(tree, backward, gravity)) /
         (2.0 * step);
-    // Some 100 J: rounding 1e-14 over the step leaves 1e-8, the step's square as much.
+    // Energies are some 100 J. Rounding of 1e-14 over the step leaves 1e-8, and so does truncation.
     EXPECT_NEAR(torques[i], slope, 1e-6) << tree.joints[tree.coordinate_joint[i]].name;
   }
 }
@@ -57,15 +57,15 @@ TEST(Statics, LargestTorquesAreThoseOfLoadsHeldOutSideways) {
 }
 
 TEST(Statics, PlanarArmByHand) {
-  // Lying arm that lifts about -y: 2 kg at the elbow, 1 kg at the tip.
+  // An arm in the xy plane, with gravity along -y, 2 kg at the elbow and 1 kg at the tip.
   RobotTree tree = PlanarArm();
   tree.links[2].mass = 2.0;
   tree.links[3].mass = 1.0;
-  const Vector3d gravity(0, -10, 0);  // down in the arm's plane
+  const Vector3d gravity(0, -10, 0);  // downwards in the arm's plane
   const Eigen::VectorXd torques = GravityTorques(tree, Eigen::Vector2d::Zero(), gravity);
-  EXPECT_NEAR(torques[0], 2 * 10 * 0.5 + 1 * 10 * 0.8, 1e-13);  // holds it up: positive about z
+  EXPECT_NEAR(torques[0], 2 * 10 * 0.5 + 1 * 10 * 0.8, 1e-13);  // positive about z holds the arm up
   EXPECT_NEAR(torques[1], 1 * 10 * 0.3, 1e-13);
-  // Standing up, nothing is to hold.
+  // An upright arm needs no torque.
   EXPECT_LT(GravityTorques(tree, Eigen::Vector2d(M_PI / 2, 0), gravity).norm(), 1e-13);
 }
 
@@ -96,7 +96,7 @@ TEST(Statics, TorquesAreTheSlopeOfPotentialEnergy) {
   }
 }
 
-/// Energy of the links with `fixed_link` held where it is at `at`, for other positions q.
+/// Energy at positions q, if `fixed_link` is held where it is at positions `at`.
 double EnergyAbout(const RobotTree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& at,
                    const Vector3d& gravity, int fixed_link) {
   const Transform T_now_moved =
@@ -126,14 +126,15 @@ TEST(Statics, TorquesOnAnyFixedLinkAreTheSlopeOfPotentialEnergy) {
       const double slope = (EnergyAbout(tree, forward, q, gravity, fixed_link) -
                             EnergyAbout(tree, backward, q, gravity, fixed_link)) /
                            (2.0 * step);
-      // As above.
+      // The tolerance is as above.
       EXPECT_NEAR(torques[c], slope, 1e-6);
     }
   }
 }
 
 TEST(GravityLoads, OfALeverByHand) {
-  // The arm lies along x and lifts about -y; 2 kg half-way along the forearm, gravity of 10.
+  // The arm lies along x and lifts about -y. Half-way along the forearm is a mass of 2 kg; gravity
+  // is 10.
   RobotTree tree = MakeRoot();
   const int upper = AddJoint(tree, "shoulder", 0, Transform::Identity(), {0, -1, 0});
   const int lower = AddJoint(tree, "elbow", upper, Offset(0.5, 0, 0), {0, -1, 0});
@@ -149,14 +150,14 @@ TEST(GravityLoads, OfALeverByHand) {
   const JointLoads held = GravityLoads(model, ApplyErrors(model, delta), q, gravity, 0);
   EXPECT_LT((held.col(0) - Vector3d(0, 0, -2 * 10 * 0.65)).norm(), 1e-13);
   EXPECT_LT((held.col(1) - Vector3d(0, 0, -2 * 10 * 0.15)).norm(), 1e-13);
-  // Held at the hand instead, the elbow carries root and upper arm, which pull it down on the other
-  // side: the child is turned the other way round.
+  // If the hand is held instead, the elbow carries the root and the upper arm. They pull it down on
+  // its other side, which turns the child the other way round.
   const JointLoads hanging = GravityLoads(model, ApplyErrors(model, delta), q, gravity, lower);
   EXPECT_LT((hanging.col(1) - Vector3d(0, 0, -(100 + 1) * 10 * 0.5)).norm(), 1e-12);
 }
 
-/// Height of the tip of a horizontal link of 0.3 m under its elastic joint, for a torque that the
-/// motor's sensor reports.
+/// Height of the tip of a horizontal link of 0.3 m behind its elastic joint, if the motor's sensor
+/// reports this torque.
 double TipHeight(const Vector3d& axis, double measured_torque) {
   RobotTree tree = MakeRoot();
   const int link = AddJoint(tree, "joint", 0, Transform::Identity(), axis);
@@ -169,7 +170,7 @@ double TipHeight(const Vector3d& axis, double measured_torque) {
 }
 
 TEST(MeasuredTorques, ALinkSagsUnderWhatItsMotorHoldsUp) {
-  // About -y a positive torque lifts, about y a negative one: 10 N.m each balance a weight.
+  // A positive torque lifts about -y, a negative one about y. Both of 10 N.m balance a weight.
   EXPECT_NEAR(TipHeight({0, -1, 0}, 10.0), -0.3 * std::sin(0.01), 1e-15);
   EXPECT_NEAR(TipHeight({0, 1, 0}, -10.0), -0.3 * std::sin(0.01), 1e-15);
 }
@@ -231,9 +232,9 @@ double ElasticEnergy(const ErrorModel& model, const Eigen::VectorXd& delta,
 }
 
 TEST_P(LoadsOfRandomRobots, TurnJointsTheWayThatLowersTheRobot) {
-  // Of all three axes of every joint, and of errors in all parameters: the work of gravity on a
-  // small elastic rotation e about an axis is load * e. A unit load in place of the true one makes
-  // the compliance that rotation.
+  // This holds for all three axes of every joint, with errors in all parameters. The work of
+  // gravity in a small elastic rotation e about an axis is load * e. With a unit load instead of
+  // the true one, the compliance is that rotation.
   Eigen::VectorXd delta = random_.NormalVector(model_.parameter_count(), 0.02);
   for (int i = 0; i < delta.size(); ++i) {
     if (IsCompliance(model_.parameters[i].kind)) delta[i] = 0.0;
@@ -254,7 +255,7 @@ TEST_P(LoadsOfRandomRobots, TurnJointsTheWayThatLowersTheRobot) {
       return ElasticEnergy(model_, moved, q_, ones, gravity_ref_, T_ref_fixed, fixed_link_);
     };
     const double work = -(energy(forward) - energy(backward)) / (2.0 * step);
-    // Hundreds of J: the step's square leaves 1e-6, rounding 1e-13 / 1e-4.
+    // Energies are hundreds of J. Truncation leaves 1e-6, and rounding 1e-13 / 1e-4.
     const double load =
         p.axis < kRootAxis ? loads(p.axis, p.joint) : loads.about_root(p.axis - kRootAxis, p.joint);
     EXPECT_NEAR(load, work, 1e-5) << p.name;
@@ -264,8 +265,8 @@ TEST_P(LoadsOfRandomRobots, TurnJointsTheWayThatLowersTheRobot) {
 INSTANTIATE_TEST_SUITE_P(Seeds, LoadsOfRandomRobots, testing::Range(1, 31));
 
 TEST(GravityLoads, OneStepOfDeflectionIsEnough) {
-  // The loads of the deflected robot differ by the deflection, some 1e-3; the next step by its
-  // square.
+  // Deflection changes the loads by its own size, some 1e-3. A second step would change them by the
+  // square of this.
   RobotTree tree = TalosLeg();
   Random random(1);
   GiveMasses(tree, random);

@@ -62,7 +62,7 @@ TEST(Subtree, KinematicsAreThoseOfTheTree) {
       for (std::size_t i = 0; i < subtree.links.size(); ++i) {
         const Transform expected =
             T_root_link[root].inverse() * T_root_link[FindLink(tree, subtree.links[i].name)];
-        // Roundings along up to nine joints.
+        // Accumulated rounding along up to nine joints.
         EXPECT_LT((T[i].matrix() - expected.matrix()).norm(), 1e-14) << subtree.links[i].name;
       }
     }

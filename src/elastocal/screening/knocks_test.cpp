@@ -10,9 +10,10 @@
 namespace elastocal {
 namespace {
 
-// Whether knocks are found is shown on the whole robot: tests/knock_test.cpp.
+// Finding knocks is tested on the whole robot, in tests/knock_test.cpp.
 
-/// Three markers in six postures: marker m is at (m, posture, 0); the last is seen at the end only.
+/// Three markers in six postures. Marker m is at (m, posture, 0), and the last one is seen only at
+/// the end.
 class SplitTest : public ::testing::Test {
  protected:
   SplitTest() {
@@ -57,7 +58,7 @@ TEST_F(SplitTest, TheNameStaysWithTheDataAfterTheKnock) {
   }
 }
 
-// Five postures were searched; the one that was left out is told by the order of time.
+// Five postures were searched. Order in time tells to which side the left-out posture belongs.
 TEST_F(SplitTest, LeftOutPosturesHaveTheMarkerThatTheOrderSays) {
   const std::vector<int> searched = {0, 1, 2, 4, 5}, left_out = {3};
   for (const auto& [at, seen] : {std::pair(4, 3), {3, -1}, {2, 0}}) {  // of those searched
@@ -69,7 +70,7 @@ TEST_F(SplitTest, LeftOutPosturesHaveTheMarkerThatTheOrderSays) {
     SplitLeftOut(knocks, model, searched, left_out, rest);
     EXPECT_EQ(rest.marker_names, training.marker_names);
     EXPECT_EQ(Seen(rest, 0, 3), seen == 3) << at;
-    EXPECT_EQ(Seen(rest, 0, 0), seen == 0) << at;  // between both sides, neither
+    EXPECT_EQ(Seen(rest, 0, 0), seen == 0) << at;  // between the two sides: neither
     EXPECT_TRUE(Seen(rest, 0, 1));
     if (seen < 0) continue;
     EXPECT_EQ(MarkerPosition(rest, 0, seen), Eigen::Vector3d(0.0, 3.0, 0.0));
@@ -86,7 +87,7 @@ TEST_F(SplitTest, AClusterMayBeKnockedAgain) {
   EXPECT_EQ(
       recording_.marker_names,
       (std::vector<std::string>{"A", "B", "C", "A(before)", "A(before)(before)", "A(before 2)"}));
-  const int expected[] = {4, 4, 3, 3, 5, 0};  // the marker that has the data of each posture
+  const int expected[] = {4, 4, 3, 3, 5, 0};  // the marker that has each posture's data
   for (int i = 0; i < 6; ++i) {
     for (int m : {0, 3, 4, 5}) EXPECT_EQ(Seen(recording_, i, m), m == expected[i]) << i << " " << m;
   }

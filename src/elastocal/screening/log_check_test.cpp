@@ -14,10 +14,9 @@
 namespace elastocal {
 namespace {
 
-constexpr int kPlayed = 12;  // postures of a trial
+constexpr int kPlayed = 12;  // postures per trial
 
-/// A biped with errors of usual size plays random postures in two trials, each at a place of its
-/// own.
+/// A biped with errors of usual size plays random postures in two trials, each at its own place.
 class LogCheckTest : public testing::Test {
  protected:
   LogCheckTest()
@@ -41,7 +40,7 @@ class LogCheckTest : public testing::Test {
     See(recording_);
   }
 
-  /// Markers as they are at the recording's positions.
+  /// Sets the markers to where the recording's positions put them.
   void See(Recording& recording) { See(robot_.model, geometry_, recording); }
 
   void See(const ErrorModel& model, Geometry& geometry, Recording& recording) const {
@@ -67,7 +66,7 @@ class LogCheckTest : public testing::Test {
     return clusters;
   }
 
-  /// The first suspicion in words.
+  /// Describes the first suspicion.
   std::string First(const Recording& recording) const {
     const auto found = FindLogSuspicions(robot_.model, recording);
     return found.empty() ? "" : DescribeSuspicion(found.front(), robot_.biped.tree, recording);
@@ -84,11 +83,11 @@ TEST_F(LogCheckTest, TheMarkersShowThePositionsOfTheJoints) {
   Recording changed = recording_;
   changed.q.col(Coordinate("left_4")).array() += 0.3;
   const Eigen::MatrixXd shown = PositionsByMarkers(robot_.model, changed);
-  // Errors of the robot and of the markers: half a degree, millimetres on levers of 0.1 m.
-  // Six joints are told from one cluster at the end, so near singular postures they are rough.
+  // Errors are half a degree for joints, and millimetres on levers of 0.1 m for markers. One
+  // cluster at the end tells six joints, so that the positions are rough near singular postures.
   EXPECT_LT((shown - recording_.q).norm() / std::sqrt(double(shown.size())), 0.06);
   const Eigen::VectorXd knee = (shown - recording_.q).col(Coordinate("left_4"));
-  EXPECT_LT(Median(knee.cwiseAbs()), 0.05);  // told by a cluster 0.4 m away
+  EXPECT_LT(Median(knee.cwiseAbs()), 0.05);  // a cluster 0.4 m away tells it
 }
 
 TEST_F(LogCheckTest, NothingIsSaidOfACleanRecording) {
@@ -111,7 +110,7 @@ TEST_F(LogCheckTest, AReversedSignIsTold) {
 TEST_F(LogCheckTest, AReversedSignIsToldOfAJointThatIsMountedFarOff) {
   const int ankle = Coordinate("right_5");
   Recording changed = recording_;
-  changed.q.col(ankle) *= -0.3;  // a small range beside the offset
+  changed.q.col(ankle) *= -0.3;  // a range that is small beside the offset
   See(changed);
   recording_.q.col(ankle) *= 0.3;
   recording_.q.col(ankle).array() += 0.08;
@@ -119,7 +118,8 @@ TEST_F(LogCheckTest, AReversedSignIsToldOfAJointThatIsMountedFarOff) {
   EXPECT_EQ(First(recording_), "right_5: the sign of its positions is reversed in trial a, b");
 }
 
-// A joint that stood still in a trial could be off there as well. Its sign is known from the other.
+// In the trial in which it stood still, an offset of the joint would explain as much. The other
+// trial tells its sign.
 TEST_F(LogCheckTest, AReversedSignIsFollowedToTrialsInWhichTheJointStoodStill) {
   const int hip = Coordinate("left_2");
   recording_.q.col(hip).tail(kPlayed).setConstant(0.3);
@@ -143,7 +143,7 @@ TEST_F(LogCheckTest, AnExchangeOfJointsInOneTrialIsTold) {
           .q == recording_.q);
 }
 
-// As a waist and a neck whose markers only another trial shows.
+// The joints are for instance those of a waist and a neck whose markers only another trial shows.
 TEST_F(LogCheckTest, AnExchangeWithAJointThatNoMarkerShowsIsTold) {
   const int trunk = Coordinate("trunk_yaw"), hip = Coordinate("right_3");
   recording_.q.col(hip).head(kPlayed).setZero();
@@ -155,7 +155,7 @@ TEST_F(LogCheckTest, AnExchangeWithAJointThatNoMarkerShowsIsTold) {
   changed.q.col(trunk).head(kPlayed).setZero();
   const std::string said = "trunk_yaw and right_3: their positions are exchanged in trial a";
   EXPECT_EQ(First(changed), said);
-  // Nor does any other trial: a model of the markers that were seen has no such joint.
+  // No trial shows it: a model of the markers that are seen does not have this joint.
   changed.marker_names.resize(9);  // without RFOOT
   changed.markers.conservativeResize(Eigen::NoChange, 27);
   ErrorModel without = SelectMarkers(robot_.model, changed.marker_names);
@@ -177,7 +177,8 @@ TEST_F(LogCheckTest, AFrozenJointIsTold) {
             2 * kPlayed - 6);
 }
 
-// The log comes back while a posture is held: the mean of that one is nearly the frozen place.
+// The log resumes while a posture is held, so that the mean of that posture is nearly the frozen
+// position.
 TEST_F(LogCheckTest, ThePostureInWhichAFrozenJointComesBackIsLeftOutAsWell) {
   Recording changed = recording_;
   auto right_4 = changed.q.col(Coordinate("right_4")).segment(kPlayed + 5, 7);
@@ -193,7 +194,7 @@ TEST_F(LogCheckTest, AJointThatIsLoggedInOnePlaceThroughoutIsTold) {
   changed.q.col(Coordinate("right_4")).setConstant(0.2);
   EXPECT_EQ(First(changed), "right_4: its positions are frozen, while it moved, in " +
                                 std::to_string(2 * kPlayed) + " postures in trial a, b");
-  See(changed);  // it stood still
+  See(changed);  // now it really stood still
   EXPECT_EQ(First(changed), "");
 }
 
@@ -209,7 +210,7 @@ TEST_F(LogCheckTest, AJointThatIsNotRecordedAndMovesIsSaidToBeNotRecorded) {
   }
 }
 
-// It rests while others move, and the markers show it elsewhere, but in one place.
+// The joint rests while others move. The markers show it at one other position, not at several.
 TEST_F(LogCheckTest, AJointAtRestIsNotFrozen) {
   Recording rests = recording_;
   auto right_4 = rests.q.col(Coordinate("right_4")).segment(kPlayed + 5, 6);
@@ -222,7 +223,7 @@ TEST_F(LogCheckTest, AJointAtRestIsNotFrozen) {
 TEST_F(LogCheckTest, ExchangedLabelsAreTold) {
   Recording changed = recording_;
   const auto clusters = Clusters();
-  for (int k = 0; k < 3; ++k) {  // the feet, in the second trial
+  for (int k = 0; k < 3; ++k) {  // exchanges the feet in the second trial
     changed.markers.block(kPlayed, 3 * clusters[2].markers[k], kPlayed, 3)
         .swap(changed.markers.block(kPlayed, 3 * clusters[3].markers[k], kPlayed, 3));
   }
@@ -236,7 +237,7 @@ TEST_F(LogCheckTest, ExchangedLabelsAreTold) {
   changed.markers.middleCols<3>(3 * clusters[0].markers[0])
       .swap(changed.markers.middleCols<3>(3 * clusters[0].markers[1]));
   found = FindLabelSuspicions(robot_.model, changed, clusters);
-  ASSERT_EQ(found.size(), 1u);  // of both trials: in one of them, it contradicts the other
+  ASSERT_EQ(found.size(), 1u);  // in one trial alone, it would contradict the other
   EXPECT_EQ(DescribeSuspicion(found[0], changed),
             "the labels of WAIST_1 and WAIST_2 are exchanged in trial a, b");
   EXPECT_TRUE(WithoutExchange(changed, found[0]).markers == recording_.markers);
@@ -259,11 +260,11 @@ TEST_F(LogCheckTest, MarkersExchangedInAPartOfATrialAreToldByTheRobotWhereDistan
         .swap(changed.markers.block(from, 3 * trunk[1], count, 3));
     return changed;
   };
-  // Everywhere it does no harm: the project may have them the other way round.
+  // An exchange everywhere does no harm: the project may have named them the other way round.
   EXPECT_TRUE(FindLabelSuspicions(model, exchanged(0, 2 * kPlayed), clusters).empty());
 
   Recording changed = exchanged(0, kPlayed + 3);
-  // A posture that does not show the two is taken for what those before it are.
+  // A posture that does not show both markers is treated like the postures before it.
   clean.markers.block<1, 3>(5, 3 * trunk[0]).setConstant(kNaN);
   changed.markers.block<1, 3>(5, 3 * trunk[1]).setConstant(kNaN);
   const auto found = FindLabelSuspicions(model, changed, clusters);

@@ -8,12 +8,12 @@
 namespace elastocal {
 namespace {
 
-/// Four markers on a body that is elsewhere in each of 30 postures, seen to 0.2 mm.
+/// Four markers on a body at another place in each of 30 postures, seen with noise of 0.2 mm.
 class MovedMarkers : public testing::Test {
  protected:
   MovedMarkers() { recording_.marker_names = {"A_1", "A_2", "A_3", "A_4"}; }
 
-  /// The marker is elsewhere from posture 12 on.
+  /// Finds knocks if the marker moves at posture 12.
   std::vector<Knock> Find(int marker, const Eigen::Vector3d& by) {
     Random random(1);
     Eigen::Matrix3Xd places(3, 4);

@@ -11,7 +11,7 @@
 namespace elastocal {
 namespace {
 
-/// Postures of a nominal biped of which cameras anywhere see displaced markers.
+/// Postures of a nominal biped with displaced markers, seen by cameras at an unknown place.
 class PlacedMisfitTest : public testing::Test {
  protected:
   PlacedMisfitTest() : table_(robot_.Empty({{.name = "a", .chains = {}}}, 40)) {
@@ -39,7 +39,7 @@ class PlacedMisfitTest : public testing::Test {
 };
 
 TEST_F(PlacedMisfitTest, PlacesTheRootAndTheMarkers) {
-  EXPECT_LT(Misfit(), 2e-3);  // of 35 mm
+  EXPECT_LT(Misfit(), 2e-3);  // the markers are displaced by 35 mm
   table_.q.col(3) *= -1.0;
   EXPECT_GT(Misfit(), 0.02);
 }

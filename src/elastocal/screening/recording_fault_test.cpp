@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-/// A sine of one joint, 10 postures a second, and as many rests after it.
+/// One joint moves as a sine, with 10 postures a second, followed by as many rests.
 Recording SineAndRests(double lag_s) {
   Recording recording;
   Trial sine, rests;
@@ -29,7 +29,8 @@ Recording SineAndRests(double lag_s) {
 TEST(RecordingFault, ALagIsUndoneByTheVelocityOfMotions) {
   const RecordingFault lag{.kind = FaultKind::kJointLag, .coordinate = 0, .size = 0.05};
   const Recording without = WithoutFault(SineAndRests(0.05), lag), truth = SineAndRests(0.0);
-  // Of second order in the lag (0.0013), and at either end in the step of 0.1 s (0.05 / 20).
+  // The error is of second order in the lag (0.0013), and at the ends half a step of 0.1 s in the
+  // velocity (0.05 / 20).
   EXPECT_LT((without.q - truth.q).cwiseAbs().maxCoeff(), 4e-3);
   EXPECT_EQ(without.q.bottomRows(20), truth.q.bottomRows(20));
   EXPECT_EQ(FactorOf(lag, truth, 25), 0.0);
@@ -46,7 +47,7 @@ TEST(RecordingFault, ADriftOfATrialIsUndoneThere) {
   const Eigen::VectorXd undone = recording.q.col(0) - WithoutFault(recording, drift).q.col(0);
   EXPECT_TRUE(undone.head(20).isZero(0.0));
   EXPECT_TRUE(undone.tail(20).isApprox(Eigen::VectorXd::LinSpaced(20, 0.0, 0.19), 1e-12));
-  drift.trial = -1;  // over the recording: 39 steps
+  drift.trial = -1;  // in the whole recording, 39 steps
   drift.posture = drift.end = 0;
   EXPECT_NEAR(FactorOf(drift, recording, 13), 1.0 / 3.0, 1e-12);
 }

@@ -12,8 +12,8 @@
 namespace elastocal {
 namespace {
 
-/// A posture table of a biped that hangs from its root link, with errors of usual size, the cameras
-/// anywhere.
+/// A posture table of a biped that hangs from its root link, with errors of usual size and cameras
+/// at an unknown place.
 class TableCheckTest : public testing::Test {
  protected:
   TableCheckTest() : table_(robot_.Empty({{.name = "a", .chains = {}}}, 30)) {
@@ -61,7 +61,7 @@ class TableCheckTest : public testing::Test {
     return found.empty() ? "" : DescribeSuspicion(found.front(), table);
   }
 
-  /// The table with two markers exchanged in postures up to `count`.
+  /// The table with two markers exchanged in its first `count` postures.
   Recording Exchanged(int a, int b, int count) const {
     Recording changed = table_;
     for (int i = 0; i < count; ++i) {
@@ -89,14 +89,15 @@ TEST_F(TableCheckTest, RowsThatAreShiftedAreToldAndUndone) {
         Recording changed = table_;
         changed.free_root = free_root;
         for (int i = from; i < table_.posture_count(); ++i) {
-          // What is cut off at an end comes in at the other: any other posture.
+          // Rows that are shifted out at one end come in at the other, where they fit as badly as
+          // any other.
           const int partner = (i - rows + table_.posture_count()) % table_.posture_count();
           changed.q.row(i) = table_.q.row(partner);
         }
         const std::optional<RowShift> shift = FindRowShift(robot_.model, changed);
         ASSERT_TRUE(shift) << from << " " << rows;
         EXPECT_EQ(shift->rows, rows);
-        // The row that is there twice fits before and after the place.
+        // The row that occurs twice fits before and after this place.
         EXPECT_NEAR(shift->from, from, rows > 0 ? 1 : 0);
         const Recording undone = WithoutShift(changed, *shift);
         const auto left = static_cast<Eigen::Index>(WithoutPartner(*shift, changed).size());
@@ -140,7 +141,7 @@ TEST_F(TableCheckTest, ExchangedJointsAreTold) {
   EXPECT_EQ(FirstOfLog(changed), "left_3 and left_4: their positions are exchanged");
 }
 
-// A joint may rest for some postures: only where the markers contradict it is it frozen.
+// A joint may rest for some postures. It is frozen only if the markers contradict it.
 TEST_F(TableCheckTest, AFrozenJointIsToldAndARestingOneIsNot) {
   const int knee = Coordinate("left_4");
   Recording changed = table_;

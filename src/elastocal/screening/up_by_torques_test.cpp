@@ -11,8 +11,8 @@
 namespace elastocal {
 namespace {
 
-/// The biped hangs with its root link held, z of the cameras up; its sensors have gains, biases and
-/// noise.
+/// The biped hangs with its root link held, and z of the cameras is up. Its torque sensors have
+/// gains, biases and noise.
 Recording Hanging(const StandingBiped& robot) {
   Recording recording = robot.Empty({{.name = "a", .chains = {}, .support = {}}}, 30);
   Geometry geometry =

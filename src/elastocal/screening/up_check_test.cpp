@@ -9,7 +9,7 @@
 namespace elastocal {
 namespace {
 
-/// The nominal biped stands in its posture at zero, upright along z of the cameras.
+/// The nominal biped stands in its zero posture, upright along z of the cameras.
 Recording Standing(const StandingBiped& robot) {
   Recording recording =
       robot.Empty({{.name = "a", .chains = {}, .support = {robot.left}},

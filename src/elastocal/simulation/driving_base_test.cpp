@@ -8,7 +8,8 @@
 namespace elastocal {
 namespace {
 
-/// Rests of a second at 0, 1 and 2 rad with moves of a second between them, and a sine at the end.
+/// Rests of a second at 0, 1 and 2 rad with motions of a second between them, and a sine at the
+/// end.
 Motion RestsAndASine() {
   Motion motion;
   const auto at = [](double value) { return Eigen::VectorXd::Constant(1, value); };
@@ -42,7 +43,7 @@ TEST(DriveBase, StandsWhereTheRobotRestsAndIsElsewhereAtTheNextRest) {
 
   double fastest = 0.0;
   for (int i = 0; i < frames; ++i) {
-    // The robot itself is as it was, on a level floor, wherever its base is.
+    // Relative to its root, the robot is unchanged. Its base is on a level floor.
     const Transform T_camera_root = played.T_camera_waist[static_cast<std::size_t>(i)];
     const Eigen::Vector3d first = played.markers.block<1, 3>(i, 0).transpose();
     const Eigen::Vector3d second = played.markers.block<1, 3>(i, 3).transpose();
@@ -66,9 +67,9 @@ TEST(DriveBase, StandsWhereTheRobotRestsAndIsElsewhereAtTheNextRest) {
   };
   EXPECT_GT((base(250) - base(50)).norm(), 0.01);
   EXPECT_GT((base(450) - base(250)).norm(), 0.01);
-  // On through the whole sine, whose turning points are no rests.
+  // The base moves during the whole sine, whose turning points are no rests.
   EXPECT_GT((base(699) - base(450)).norm(), 0.01);
-  EXPECT_LT(fastest, 3.0);  // of 0.85 m and 1 rad at most in a second, 1.9 times the mean speed
+  EXPECT_LT(fastest, 3.0);  // at most 0.85 m and 1 rad in a second, with 1.9 times the mean speed
 
   TrueMotion again = held;
   DriveBase(motion, T_camera_world, 5, again);

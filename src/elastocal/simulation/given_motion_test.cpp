@@ -13,7 +13,7 @@ namespace {
 
 class GivenMotion : public testing::Test {
  protected:
-  /// Trunk and left knee given at each sample; of all else nothing is said.
+  /// A motion that gives trunk and left knee at each sample, and no other joint.
   JointMotion Samples(const std::vector<double>& trunk, const std::vector<double>& knee) const {
     JointMotion motion;
     motion.source = "m.csv";
@@ -46,18 +46,21 @@ TEST_F(GivenMotion, PosturesAreVisitedFiveSecondsApart) {
   EXPECT_EQ(trials[0].support, (std::vector<int>{left_, right_}));
   EXPECT_EQ(trials[0].chains, std::vector<int>{0});  // the trunk alone moves
   EXPECT_EQ(trials[0].postures, 3);
-  // At rest for 5 s of lead-in and 1.5 s; then 3.5 s to the next posture and 1.5 s there.
+  // The robot rests for 5 s of lead-in and 1.5 s. Each further posture takes a motion of 3.5 s and
+  // a rest of 1.5 s.
   EXPECT_DOUBLE_EQ(trials[0].motion.duration_s(), 6.5 + 2 * 5.0);
   const int yaw = Coordinate("trunk_yaw");
   EXPECT_DOUBLE_EQ(PostureAt(trials[0].motion, 6.4)[yaw], 0.1);
   EXPECT_NEAR(PostureAt(trials[0].motion, 6.5 + 1.75)[yaw], 0.15, 1e-12);  // half way
   EXPECT_DOUBLE_EQ(PostureAt(trials[0].motion, 11.0)[yaw], 0.2);
   EXPECT_DOUBLE_EQ(PostureAt(trials[0].motion, 16.5)[yaw], -0.3);
-  EXPECT_NE(PostureAt(trials[0].motion, 0.0)[Coordinate("right_4")], 0.0);  // stands, knees bent
+  EXPECT_NE(PostureAt(trials[0].motion, 0.0)[Coordinate("right_4")],
+            0.0);  // stands with bent knees
 }
 
 TEST_F(GivenMotion, ATrajectoryIsFollowedWithItsRests) {
-  // At rest for a second, then a parabola, which a cubic through samples meets exactly in between.
+  // The robot rests for a second and then follows a parabola, which cubic interpolation meets
+  // exactly.
   JointMotion motion = Samples({0, 0, 0.04, 0.16, 0.36}, {0.5, 0.5, 0.5, 0.5, 0.5});
   motion.time_s.resize(5);
   motion.time_s << 10.0, 11.0, 11.2, 11.4, 11.6;
@@ -96,11 +99,11 @@ TEST_F(GivenMotion, EachStretchOfOneSupportIsATrial) {
 }
 
 TEST_F(GivenMotion, AFootThatStandsThroughTwoTrialsStays) {
-  // On both feet, on the right one, on the left one, on both.
+  // The robot stands on both feet, on the right one, on the left one, and on both.
   JointMotion motion = Samples({0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}, std::vector(8, 0.5));
   motion.support = {{left_, right_}, {left_, right_}, {right_},        {right_},
                     {left_},         {left_},         {left_, right_}, {left_, right_}};
-  EXPECT_FALSE(Plan(motion)[1].stays);  // postures are no trajectory
+  EXPECT_FALSE(Plan(motion)[1].stays);  // postures without times are no trajectory
   motion.time_s = Eigen::VectorXd::LinSpaced(8, 0.0, 1.4);
   std::vector<PlannedTrial> trials = Plan(motion);
   ASSERT_EQ(trials.size(), 4u);
@@ -109,7 +112,8 @@ TEST_F(GivenMotion, AFootThatStandsThroughTwoTrialsStays) {
   EXPECT_EQ(trials[3].support, (std::vector<int>{left_, right_}));
   for (int i = 0; i < 4; ++i) EXPECT_EQ(trials[i].stays, i == 1 || i == 3) << i;
 
-  // On one foot, on both, on the other: the second foot does not stay beside the first.
+  // The robot stands on one foot, on both, and on the other. The second foot need not stay beside
+  // the first.
   motion.support = {{right_}, {right_}, {left_, right_}, {left_, right_},
                     {left_},  {left_},  {right_},        {right_}};
   trials = Plan(motion);
@@ -127,7 +131,7 @@ TEST_F(GivenMotion, AStretchInWhichOnlyWhatStandsMovesIsPassedOver) {
 }
 
 TEST_F(GivenMotion, ARoundingExercisesNoChain) {
-  // Positions that were written with nine digits and with sixteen.
+  // The positions were written with nine digits and with sixteen.
   JointMotion motion = Samples({0.1, 0.1 + 3e-9, 0.1}, {0.5, 0.6, 0.8});
   motion.support = {{right_}, {right_}, {right_}};
   EXPECT_EQ(Plan(motion)[0].chains, std::vector<int>{1});  // the left leg, not the trunk

@@ -27,7 +27,7 @@ VirtualExperimentOptions ShortAndPerfect() {
   return options;
 }
 
-/// Both legs elastic, the trunk's two joints as well.
+/// Both legs are elastic, and so are the trunk's two joints.
 ErrorModel Model(const DescribedRobot& robot) {
   return MakeErrorModel(
       robot.tree, robot.markers, {},
@@ -41,7 +41,7 @@ std::vector<int> All(const ErrorModel& model) {
   return all;
 }
 
-// What a vertical spring carries is the weight above it: all but the leg.
+// A vertical spring carries the weight of all but its leg.
 TEST(MatchedExperiment, TheWaistSinksByTheWeightOnItsLeg) {
   constexpr double kLeg = 5.0 + 3.0 + 1.5;  // kg
   constexpr double kCompliance = 5e-6;      // m/N
@@ -61,7 +61,8 @@ TEST(MatchedExperiment, TheWaistSinksByTheWeightOnItsLeg) {
     Transform expected = motion.T_camera_foot[0] * LinkTransforms(model.tree, q)[foot].inverse();
     expected.translation().z() -= sinks;
     const Transform& found = motion.T_camera_waist[static_cast<std::size_t>(i)];
-    // Of differences between sums of forces near 1e3 N, on legs of condition 1e1.
+    // These are differences between sums of forces near 1e3 N, on legs with a condition number of
+    // 1e1.
     EXPECT_LT((found.matrix() - expected.matrix()).cwiseAbs().maxCoeff(), 1e-12);
     const Eigen::VectorXd torques =
         StaticTorques(model.tree, q, found.linear().transpose() * Eigen::Vector3d(kGravity), foot);
@@ -72,7 +73,7 @@ TEST(MatchedExperiment, TheWaistSinksByTheWeightOnItsLeg) {
             0.0);
 }
 
-// MuJoCo's robot at rest, with springs in the same joints, hangs as ours does.
+// In MuJoCo, the robot at rest with springs in the same joints hangs like ours.
 TEST(MatchedExperiment, SpringsOfTheTrunkGiveWayAsInMuJoCo) {
   VirtualExperimentOptions options = ShortAndPerfect();
   options.truth.upper_elasticity_scale = 20.0;
@@ -94,7 +95,7 @@ TEST(MatchedExperiment, SpringsOfTheTrunkGiveWayAsInMuJoCo) {
   for (int m = 3; m < 6; ++m) {
     const Eigen::Vector3d found = motion.markers.row(last).segment<3>(3 * m).transpose();
     EXPECT_GT((hang(0.0 * truth).markers.col(m) - found).norm(), 5e-4) << "nothing gives way";
-    // The motion ends 1.5 s before; what still swings is less than this.
+    // The motion ended 1.5 s before. Remaining oscillation is smaller than this.
     EXPECT_LT((hang(truth).markers.col(m) - found).norm(), 1e-5);
   }
 }

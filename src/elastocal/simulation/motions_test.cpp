@@ -33,7 +33,7 @@ TEST(PlanTrials, AreThoseOfThePaper) {
   EXPECT_EQ(trials[1].chains, std::vector<int>{1});
   EXPECT_EQ(trials[1].kind, TrialKind::kCalibration);
   EXPECT_EQ(trials[6].kind, TrialKind::kSine);
-  // Five seconds a posture after the lead-in.
+  // After the lead-in, each posture takes five seconds.
   EXPECT_DOUBLE_EQ(trials[1].motion.duration_s(), 5.0 + 4 * 5.0);
   EXPECT_DOUBLE_EQ(trials[5].motion.duration_s(), 5.0 + 10 * 5.0);
 }
@@ -54,7 +54,8 @@ TEST(PlanTrials, MotionsAreSmoothAndWithinTheLimits) {
         ASSERT_GE(q[i], limits.lower - 1e-9) << trial.name;
         ASSERT_LE(q[i], limits.upper + 1e-9) << trial.name;
         ASSERT_LE(std::abs(speed[i]), limits.velocity) << trial.name;
-        // No jump: accelerations of a few rad/s^2 change the speed by hundredths in a hundredth.
+        // Speeds do not jump: accelerations of a few rad/s^2 change them by hundredths within 0.01
+        // s.
         ASSERT_LE(std::abs(speed[i] - speed_before[i]), 0.3) << trial.name << " at " << t;
       }
       before = q;
@@ -77,11 +78,11 @@ TEST(PlanTrials, SwingAboveTheFloorOnABentLegThatCarries) {
       const Transform& T_waist_swing = T[static_cast<std::size_t>(legs[0].foot_link)];
       EXPECT_GE((T_sole_waist * T_waist_swing).translation().z(),
                 options.postures.ground_clearance);
-      // The workspace of Fig. 2, for a robot of 1.082 m.
+      // The workspace of Fig. 2 is for a robot of 1.082 m.
       const Eigen::Vector3d p = T_waist_swing.translation() * 1.083 / 1.082;
       EXPECT_TRUE((p.array() >= options.postures.foot.lower.array()).all()) << p.transpose();
       EXPECT_TRUE((p.array() <= options.postures.foot.upper.array()).all()) << p.transpose();
-      // Balanced over the sole.
+      // The centre of mass is over the sole.
       const Eigen::Vector3d com =
           T_sole_waist * CentreOfMass(biped.tree, BodyInertias(biped.tree), segment.to);
       EXPECT_LE(std::abs(com.x()), options.postures.sway.x() + 0.01);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kFrames = 6000;
 
-/// A minute in which the joints move as sines, and the markers likewise, without any robot.
+/// A minute in which joints and markers move as sines, independently of any robot.
 class Sensors : public testing::Test {
  protected:
   Sensors() {
@@ -57,7 +57,8 @@ class Sensors : public testing::Test {
     return Measure(robot_, clusters_, trials_, trial, motion_, options_, faults);
   }
 
-  /// Positions that differ from the truth by more than a micrometre, or are missing, of a marker.
+  /// Number of positions of a marker that are missing or differ from the truth by more than a
+  /// micrometre.
   int Changed(const RawTrial& raw, int marker, Eigen::Index from = 0,
               Eigen::Index to = kFrames) const {
     int count = 0;
@@ -80,7 +81,7 @@ TEST_F(Sensors, PerfectOnesShowTheTruth) {
   const RawTrial raw = Measured();
   EXPECT_EQ(raw.markers.positions, motion_.markers);
   EXPECT_EQ(raw.joints.sample_count(), kFrames);
-  // Printed to 1e-8 rad and 1e-4 N.m.
+  // The log has 1e-8 rad and 1e-4 N.m as last digits.
   EXPECT_LT((raw.joints.positions - motion_.encoders).cwiseAbs().maxCoeff(), 0.51e-8);
   EXPECT_LT((raw.joints.torques - motion_.torques).col(1).cwiseAbs().maxCoeff(), 0.51e-4);
   EXPECT_TRUE(raw.joints.torques.col(0).array().isNaN().all()) << "no sensor there";
@@ -114,14 +115,14 @@ TEST_F(Sensors, GapsAndSwapsComeAsOftenAsTold) {
   const Eigen::MatrixXd& gappy = Measured().markers.positions;
   const double missing =
       static_cast<double>(gappy.array().isNaN().count()) / static_cast<double>(gappy.size());
-  EXPECT_NEAR(missing, 6.0 * 0.5 / 60.0, 0.02);  // 72 gaps: 14 % of itself
+  EXPECT_NEAR(missing, 6.0 * 0.5 / 60.0, 0.02);  // 72 gaps scatter by 14 %
   options_.gaps_per_minute = 0.0;
   options_.swaps_per_minute = 10.0;
   const RawTrial swapped = Measured();
   const int moved = Changed(swapped, 0) + Changed(swapped, 1) + Changed(swapped, 2);
   EXPECT_GT(moved, 0);
   EXPECT_EQ(Changed(swapped, 6), 0) << "no cluster";
-  // The three positions are only exchanged.
+  // The three positions are exchanged and otherwise unchanged.
   const Eigen::RowVectorXd sum = swapped.markers.positions.leftCols(9).rowwise().sum().transpose() -
                                  motion_.markers.leftCols(9).rowwise().sum().transpose();
   EXPECT_LT(sum.cwiseAbs().maxCoeff(), 1e-12);
@@ -136,7 +137,7 @@ TEST_F(Sensors, TheLogRunsOnItsOwnClock) {
   EXPECT_EQ(raw.joints.time_s[0], 0.0);
   for (Eigen::Index i = 0; i < raw.joints.time_s.size(); i += 100) {
     const double camera_s = (raw.joints.time_s[i] + 2.5) / (1.0 + 1e-6 * raw.truth.drift_ppm);
-    // Between the truth's samples by cubic interpolation.
+    // Cubic interpolation between the truth's samples.
     if (camera_s < 59.9) {
       EXPECT_NEAR(raw.joints.positions(i, 0), Position(camera_s), 1e-6);
     }
@@ -205,7 +206,7 @@ TEST_F(Sensors, FaultKnockedClusterStaysKnocked) {
   };
   EXPECT_NEAR(shift(0).head<3>().norm(), 5e-3, 1e-12);
   EXPECT_LT((shift(0).head<3>() - shift(0).tail<3>()).norm(), 1e-12) << "all three alike";
-  // It is fixed to the link: it turns with it.
+  // The displacement is fixed to the link and turns with it.
   const Eigen::Vector3d turned =
       RotZ(Position(0.3)) * Eigen::Vector3d(shift(0).head<3>().transpose());
   EXPECT_LT((turned.transpose() - shift(30).head<3>()).norm(), 1e-9);
@@ -229,7 +230,7 @@ TEST_F(Sensors, FaultsOfTorqueSensorsAndLog) {
 
 TEST_F(Sensors, FaultSlippedFootMovesAllInOnePosture) {
   Faults faults;
-  faults.slipped_posture = 2;  // moves end at 4, 9, 14 s...
+  faults.slipped_posture = 2;  // motions end at 4, 9, 14 s...
   const RawTrial raw = Measured(faults);
   EXPECT_EQ(Changed(raw, 0, 0, 800), 0);
   EXPECT_EQ(Changed(raw, 0, 800, 1300), 500);

@@ -25,7 +25,7 @@ TEST(SeriesRandom, WithTheWholeShareRobotsAreEqualAndSeriesDiffer) {
   EXPECT_NE(draw(1, 5), draw(1, 6));
 }
 
-// Moments of 40000 robots; four standard errors of a variance are 3 %, of a correlation 2 %.
+// Moments over 40000 robots. Four standard errors are 3 % for a variance and 2 % for a correlation.
 TEST(SeriesRandom, TheShareIsOfTheVariance) {
   constexpr int kRobots = 40000;
   double mean = 0.0, squares = 0.0, uniform = 0.0, uniform_squares = 0.0;
@@ -36,7 +36,7 @@ TEST(SeriesRandom, TheShareIsOfTheVariance) {
     squares += x * x / kRobots;
   }
   EXPECT_NEAR(squares - mean * mean, 0.2, 0.006);
-  // Over series, the whole variance is there, and uniform numbers are uniform.
+  // Over many series, the variance is the whole one, and uniform numbers are uniform.
   squares = 0.0;
   for (int series = 0; series < kRobots; ++series) {
     SeriesRandom random(static_cast<std::uint64_t>(series), {.seed = series, .share = 0.8}, "x");

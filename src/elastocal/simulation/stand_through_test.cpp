@@ -18,7 +18,7 @@ class BipedStandsThrough : public testing::Test {
     for (const Leg& leg : legs) soles_.push_back({leg.foot_link, {-0.1, -0.06}, {0.1, 0.06}});
   }
 
-  /// Two seconds from standing with the trunk's pitch going to `pitch`, then one at rest.
+  /// A bow: the trunk's pitch goes to `pitch` in two seconds, then the robot rests for one.
   JointMotion Bow(double pitch) const {
     JointMotion motion;
     motion.time_s = Eigen::VectorXd::LinSpaced(31, 0.0, 3.0);
@@ -28,7 +28,7 @@ class BipedStandsThrough : public testing::Test {
     return motion;
   }
 
-  /// Ankles forwards, and nothing behind.
+  /// The ankles lean forwards, and nothing moves backwards in return.
   JointMotion TooFar() const {
     JointMotion motion = Bow(0.0);
     for (int i = 0; i < 31; ++i) {
@@ -39,7 +39,7 @@ class BipedStandsThrough : public testing::Test {
     return motion;
   }
 
-  /// A trunk heavier in front than described.
+  /// Makes the trunk heavier in front than described.
   void PutWeightAhead(double distance) {
     RobotTree& tree = robot_.tree;
     tree.links[static_cast<std::size_t>(tree.joints[1].child_link)].com.x() += distance;
@@ -57,13 +57,13 @@ TEST_F(BipedStandsThrough, StandsAndPressesWhereStaticsSay) {
   EXPECT_NEAR(run.time_s, 3.0, 0.01);
   EXPECT_LT(run.largest_lean, 1e-3);
   EXPECT_LT(run.tracking, 0.01);  // servos give way by torque over 5e4 N.m/rad
-  // The nearest edge is the front or the back, as far as the centre of mass has it.
+  // The nearest edge is the front or the back one, depending on the centre of mass.
   const Eigen::Vector3d com = CentreOfMass(biped_.tree, BodyInertias(biped_.tree), stand_);
   const double x =
       (LinkTransforms(biped_.tree, stand_)[static_cast<std::size_t>(soles_[0].link)].inverse() *
        com)
           .x();
-  // The floor gives way by hundredths of a millimetre, the legs by some milliradians at 0.9 m.
+  // The floor gives way by hundredths of a millimetre. The legs lean by some milliradians at 0.9 m.
   EXPECT_NEAR(run.least_zmp_margin, 0.1 - std::abs(x), 0.006);
 }
 
@@ -73,7 +73,7 @@ TEST_F(BipedStandsThrough, FallsWhereItBowsTooFar) {
   EXPECT_LT(run.time_s, 3.0);
 }
 
-// It stands and falls as before, though its root link is as low as the soles.
+// The robot stands and falls as before, though its root link is as low as the soles.
 TEST_F(BipedStandsThrough, WithARootLinkOnTheFloor) {
   const Eigen::Vector3d up(0.0, 0.0, StandingHeight(robot_.tree, robot_.legs));
   robot_.tree.links[0].com += up;
@@ -85,7 +85,7 @@ TEST_F(BipedStandsThrough, WithARootLinkOnTheFloor) {
 }
 
 TEST_F(BipedStandsThrough, AStabiliserKeepsItOverItsFeet) {
-  // What is planned to stay 4 cm inside goes out.
+  // A motion that is planned to stay 4 cm inside leaves the support polygon.
   PutWeightAhead(0.1);
   JointMotion motion = Bow(0.0);
   motion.time_s = Eigen::VectorXd::LinSpaced(31, 0.0, 24.0);
@@ -97,22 +97,23 @@ TEST_F(BipedStandsThrough, AStabiliserKeepsItOverItsFeet) {
   EXPECT_NEAR(run.largest_shift, 29.0 / 60.0 * 0.1, 0.015);
 }
 
-// A centre of mass ahead of the toes: the robot falls as soon as it is put down, unless hands hold
-// it until the stabiliser has shifted it back.
+// The centre of mass is ahead of the toes. The robot falls as soon as it is put down, unless hands
+// hold it until the stabiliser has shifted it back.
 TEST_F(BipedStandsThrough, HandsHoldItWhileItIsPutDown) {
   PutWeightAhead(0.16);
   JointMotion motion = Bow(0.0);
   motion.time_s = Eigen::VectorXd::LinSpaced(31, 0.0, 6.0);
   const StandingRun alone = StandThrough(robot_, soles_, motion, {});
   EXPECT_FALSE(alone.stood);
-  EXPECT_LT(alone.time_s, 0.1);  // it lies there when the motion begins
+  EXPECT_LT(alone.time_s, 0.1);  // it has fallen before the motion begins
   EXPECT_LT(alone.least_zmp_margin, 0.0);
   Stabiliser stabiliser(biped_.tree, soles_);
   EXPECT_TRUE(StandThrough(robot_, soles_, motion, {}, {.stabiliser = &stabiliser}).stood);
 }
 
-// Its ankles are off by 10 mrad, so that the root link leans although it is where its model means
-// it to be. The stabiliser sets it upright by the unit, unless the unit was mounted in that rest.
+// The ankles are off by 10 mrad, so that the root link leans, although by the model it does not.
+// The stabiliser uses the inertial unit to set it upright, unless the unit was mounted in that
+// rest.
 TEST_F(BipedStandsThrough, TheInertialUnitIsMountedAsTheFirstRestShows) {
   constexpr double kLean = 0.01;
   JointMotion motion = Bow(0.0);
@@ -132,7 +133,7 @@ TEST_F(BipedStandsThrough, TheInertialUnitIsMountedAsTheFirstRestShows) {
   EXPECT_LT(turn(Eigen::Matrix3d::Identity()), 0.1 * kLean);
 }
 
-// Its trunk is heavier in front than described, which turns nothing of its kinematics.
+// The trunk is heavier in front than described, which does not change the kinematics.
 TEST_F(BipedStandsThrough, MassesThatAreOffInTheFirstRestMoveNoRootThatIsKnown) {
   PutWeightAhead(0.03);
   JointMotion motion = Bow(0.0);
@@ -150,7 +151,7 @@ TEST_F(BipedStandsThrough, MassesThatAreOffInTheFirstRestMoveNoRootThatIsKnown) 
   EXPECT_LT(shift(Eigen::Matrix3d::Identity()), 0.1 * kOff);
 }
 
-// Where no posture on one leg has the other foot in its workspace, the robot is held.
+// If no posture on one leg has the other foot in its workspace, the robot is held.
 TEST(PostureSampler, StandsOnlyWherePosturesOnEitherLegAreFound) {
   const Biped biped = MakeBiped();
   const auto legs = FindLegs(biped.tree, biped.chains);

@@ -33,7 +33,7 @@ TEST(DrawErrors, HaveTheStandardDeviationOfTheirKind) {
     sum += DrawErrors(leg, markers, {{ParameterKind::kMarker, 0.01}}, seed).squaredNorm();
   }
   const double count = 27.0 * seeds;
-  // The mean square of n numbers is within 5 sqrt(2 / n) of its expectation.
+  // The tolerance is 5 standard deviations of a mean square of n numbers, sqrt(2 / n) each.
   EXPECT_NEAR(sum / count / 1e-4, 1.0, 5.0 * std::sqrt(2.0 / count));
 }
 
@@ -71,7 +71,7 @@ TEST(SyntheticRecording, NoiseHasTheGivenLevelAndLeavesThePosturesAlone) {
   EXPECT_EQ(exact.q, noisy.q);
   const Eigen::ArrayXXd noise = (noisy.markers - exact.markers).array() / 3e-4;
   const auto count = static_cast<double>(noise.size());
-  // Within 5 standard errors of mean 0 and variance 1.
+  // Tolerances are 5 standard errors of mean 0 and variance 1.
   EXPECT_NEAR(noise.mean(), 0.0, 5.0 / std::sqrt(count));
   EXPECT_NEAR(noise.square().mean(), 1.0, 5.0 * std::sqrt(2.0 / count));
 }

@@ -21,7 +21,7 @@ double Rms(const std::vector<double>& values) {
          std::sqrt(static_cast<double>(values.size()));
 }
 
-/// Defaults without the factors on all errors of one kind.
+/// The default options without the factors that scale all errors of one kind.
 TruthOptions Unscaled() {
   TruthOptions options;
   options.upper_geometry_scale = options.leg_geometry_scale = 1.0;
@@ -49,8 +49,8 @@ TEST(FindLegs, TheRootLinkMayBeAFrameOnTheFloor) {
   const std::vector<Leg> legs = FindLegs(biped.tree, biped.chains);
   ASSERT_EQ(legs.size(), 2u);
   EXPECT_EQ(legs[0].chain, "left");
-  EXPECT_NEAR(StandingHeight(biped.tree, legs), 1.082 - 0.27, 1e-12);  // of the hips
-  // One alone is an arm that hangs down to the floor.
+  EXPECT_NEAR(StandingHeight(biped.tree, legs), 1.082 - 0.27, 1e-12);  // height of the hips
+  // A single leg would be taken for an arm that hangs down to the floor.
   EXPECT_TRUE(FindLegs(biped.tree, {biped.chains[0]}).empty());
 }
 
@@ -83,7 +83,8 @@ TEST(DrawTrueRobot, ErrorsHaveTheirSizes) {
     }
     masses.push_back(robot.tree.links[0].mass / 12.0 - 1.0);
   }
-  // Of n normal numbers the root mean square is within 5 / sqrt(2 n) of the standard deviation.
+  // The root mean square of n normal numbers is known to sd / sqrt(2 n). The tolerance is 5 times
+  // that.
   const auto near = [](const std::vector<double>& values, double sd) {
     EXPECT_NEAR(Rms(values), sd, 5.0 * sd / std::sqrt(2.0 * static_cast<double>(values.size())));
   };
@@ -95,7 +96,7 @@ TEST(DrawTrueRobot, ErrorsHaveTheirSizes) {
   near(turns, std::sqrt(3.0) * options.angle_sd);
 }
 
-// A slide as soft as a turning joint's number says would sag by centimetres.
+// A slide with the number for turning joints would be so soft that it sags by centimetres.
 TEST(DrawTrueRobot, SlidesHaveARangeOfTheirOwn) {
   const TrueRobot turning = Nominal();
   TrueRobot sliding = turning;
@@ -133,7 +134,8 @@ TEST(DrawTrueRobot, ScalesAndSwitchesOffWhatTheyName) {
   EXPECT_EQ(after.markers[3].p_link_marker, before.markers[3].p_link_marker);
 }
 
-// Of a robot of 4.9 tonnes (a KR 210 by its URDF), and of efforts of 50000 N.m (an ergoCub).
+// Such robots exist: one of 4.9 tonnes (a KR 210 by its URDF), one with efforts of 50000 N.m (an
+// ergoCub).
 TEST(DrawTrueRobot, SpringsAndFrictionFitTheRobotsWeight) {
   const TrueRobot usual = Nominal();
   const TrueRobot drawn = DrawTrueRobot(usual, Unscaled());
@@ -143,7 +145,7 @@ TEST(DrawTrueRobot, SpringsAndFrictionFitTheRobotsWeight) {
   const Eigen::VectorXd torques = LargestGravityTorques(heavy.tree);
   EXPECT_GT((torques.head(2).array() * drawn.compliance.head(2).array()).maxCoeff(), 0.02);
   EXPECT_LT((torques.head(2).array() * stiff.compliance.head(2).array()).maxCoeff(), 0.011);
-  EXPECT_EQ(stiff.compliance[5], drawn.compliance[5]);  // of a leg, which carries the robot anyhow
+  EXPECT_EQ(stiff.compliance[5], drawn.compliance[5]);  // a leg, which must carry the robot
 
   TrueRobot strong = usual;
   strong.tree.joints[0].limits.effort = 5e4;

@@ -30,7 +30,7 @@ VirtualExperimentOptions Short() {
 TEST(VirtualExperimentStudy, TheSameSeedGivesTheSameNumbers) {
   const VirtualExperiment first = PrepareExperiment(DescribedBiped(), Short());
   const VirtualExperiment again = PrepareExperiment(DescribedBiped(), Short());
-  RunTrial(again, 0);  // the order of trials does not matter
+  RunTrial(again, 0);  // the order of the trials does not matter
   const SimulatedTrial a = RunTrial(first, 1);
   const SimulatedTrial b = RunTrial(again, 1);
   EXPECT_EQ(a.motion.markers, b.motion.markers);
@@ -38,7 +38,7 @@ TEST(VirtualExperimentStudy, TheSameSeedGivesTheSameNumbers) {
   EXPECT_EQ(a.raw.joints.positions, b.raw.joints.positions);
   EXPECT_EQ(a.raw.joints.torques, b.raw.joints.torques);
   EXPECT_EQ(first.legs[0].compliance.C_foot, again.legs[0].compliance.C_foot);
-  // Gaps are not equal to themselves.
+  // Gaps are NaN, which is not equal to itself.
   EXPECT_TRUE(((a.raw.markers.positions.array() == b.raw.markers.positions.array()) ||
                (a.raw.markers.positions.array().isNaN() && b.raw.markers.positions.array().isNaN()))
                   .all());
@@ -67,7 +67,7 @@ TEST(VirtualExperiment, APerfectRobotFollowsTheForwardKinematics) {
   for (std::size_t trial : {std::size_t{0}, std::size_t{1}}) {
     const SimulatedTrial played = RunTrial(experiment, trial);
     for (Eigen::Index i = 0; i < played.motion.frame_count(); i += 50) {
-      // Everywhere on the way, not only at rest: the encoders show where the joints are.
+      // The encoders show the joints during the whole motion, not only at rest.
       const Eigen::VectorXd q = played.raw.joints.positions.row(i).transpose();
       const auto T_waist_link = LinkTransforms(described.tree, q);
       const Transform& T_camera_waist = played.motion.T_camera_waist[static_cast<std::size_t>(i)];
@@ -79,13 +79,14 @@ TEST(VirtualExperiment, APerfectRobotFollowsTheForwardKinematics) {
         const Eigen::Vector3d found = played.raw.markers.positions.row(i)
                                           .segment<3>(3 * static_cast<Eigen::Index>(m))
                                           .transpose();
-        EXPECT_LT((found - expected).norm(), 5e-8);  // of logs printed to 1e-8 rad
+        EXPECT_LT((found - expected).norm(), 5e-8);  // logs are printed to 1e-8 rad
       }
     }
   }
 }
 
-// A rest, a way, and given samples with two rests: the leg is measured in the mean of the three.
+// The trial has a rest, a way, and given samples with two rests. The leg is measured in the mean of
+// these three rests.
 TEST(VirtualExperimentStudy, LegsAreMeasuredInTheMeanOfTheirRests) {
   const DescribedRobot described = DescribedBiped();
   const VirtualExperiment plain = PrepareExperiment(described, Short(), {});
@@ -109,7 +110,7 @@ TEST(VirtualExperimentStudy, LegsAreMeasuredInTheMeanOfTheirRests) {
   trial.motion.segments = {rest, way, given};
   const VirtualExperiment experiment = PrepareExperiment(described, Short(), {trial});
   EXPECT_LT((experiment.legs[0].posture - bent(0.1)).norm(), 1e-12);
-  EXPECT_EQ(experiment.legs[1].posture, stand);  // never stood on alone
+  EXPECT_EQ(experiment.legs[1].posture, stand);  // no trial stands on it alone
   trial.kind = TrialKind::kSine;
   EXPECT_EQ(PrepareExperiment(described, Short(), {trial}).legs[0].posture, stand);
 }
@@ -120,7 +121,7 @@ TEST(VirtualExperimentStudy, ThePhysicsOfALegIsThatOfItsLumpedCompliance) {
   const VirtualExperiment experiment = PrepareExperiment(DescribedBiped(), options);
   const SimulatedTrial played = RunTrial(experiment, 1);
   const auto found = LargestWaistDeflection(experiment, 1, played.motion);
-  // The weight alone, on the stiffness in which it acts, is the least that the waist sinks.
+  // The waist sinks at least as far as the vertical stiffness alone gives way under the weight.
   const double weight = 9.81 * (TotalMass(experiment.robot.tree) - 10.0);
   EXPECT_GT(found.translation, weight * experiment.legs[1].compliance.C_foot(2, 2));
   EXPECT_LT(found.translation, 0.015);

@@ -16,7 +16,7 @@
 namespace elastocal {
 namespace {
 
-/// Steel-like inertia so that every link has weight.
+/// Gives a link mass, and an inertia as of steel, so that every link has weight.
 void GiveMass(RobotTree& tree, double mass, const Eigen::Vector3d& com) {
   for (std::size_t i = 1; i < tree.links.size(); ++i) {
     tree.links[i].mass = mass;
@@ -25,7 +25,7 @@ void GiveMass(RobotTree& tree, double mass, const Eigen::Vector3d& com) {
   }
 }
 
-/// A pendulum about y with 2 kg at 0.5 m along x, its waist held.
+/// A pendulum about y with 2 kg at 0.5 m along x. Its waist is held.
 TrueRobot Pendulum() {
   RobotTree tree = MakeRoot();
   AddJoint(tree, "swing", 0, Transform::Identity(), {0, 1, 0});
@@ -33,7 +33,7 @@ TrueRobot Pendulum() {
   return NominalRobot(tree, {{"TIP", 1, {1.0, 0, 0}}}, {}, {0});
 }
 
-// MuJoCo starts anew then, as if nothing had been, and writes a file where the user works.
+// MuJoCo would start anew without a word, and write a file into the user's folder.
 TEST(VirtualRobot, SaysThatItIsUnstable) {
   std::filesystem::remove("MUJOCO_LOG.TXT");
   VirtualRobot body(Pendulum(), {}, Eigen::VectorXd::Zero(1));
@@ -54,7 +54,7 @@ TEST(VirtualRobot, SpringOfOneJointGivesWayToItsLoad) {
   robot.compliance[0] = 1e-5;
   VirtualRobot body(robot, {}, Eigen::VectorXd::Zero(1));
   ASSERT_TRUE(body.Settle());
-  // The weight turns the pendulum about +y; the motor balances it.
+  // The weight turns the pendulum about +y, and the motor balances this.
   const double load = 2.0 * 9.81 * 0.5;
   EXPECT_NEAR(body.Torques()[0], -load, 1e-5 * load);
   EXPECT_NEAR(body.Encoders()[0], load / PhysicsOptions{}.servo_stiffness, 1e-8);
@@ -62,13 +62,13 @@ TEST(VirtualRobot, SpringOfOneJointGivesWayToItsLoad) {
   EXPECT_NEAR(body.MarkerPositions()(2, 0), -std::sin(angle), 1e-8);
 }
 
-// A pendulum that hangs is loaded only where what it hangs from is not level.
+// A hanging pendulum is loaded only if its support is not level.
 TEST(VirtualRobot, TiltedGravityPullsAside) {
   PhysicsOptions options;
   options.gravity_tilt_y = 0.1;
   VirtualRobot body(Pendulum(), {}, Eigen::VectorXd::Constant(1, M_PI / 2.0), options);
   ASSERT_TRUE(body.Settle());
-  const double load = 2.0 * 9.81 * 0.5 * std::sin(0.1);  // towards -x, and so about +y
+  const double load = 2.0 * 9.81 * 0.5 * std::sin(0.1);  // towards -x, so about +y
   EXPECT_NEAR(body.Torques()[0], -load, 1e-3 * load);    // the servo gives way
 }
 
@@ -86,8 +86,8 @@ TEST(VirtualRobot, FrictionHoldsUpToItsLimit) {
   robot.friction[0] = 1.5;
   VirtualRobot body(robot, {}, Eigen::VectorXd::Zero(1));
   ASSERT_TRUE(body.Settle());
-  // Sinking onto the servo, the joint is held by part of its friction (a bristle that has bent by
-  // the way sunk, 2e-4 rad being the bend at which it slips).
+  // When the joint sinks onto its servo, a part of its friction holds it: the bristle bends by
+  // the angle of sinking, and slips at a bend of 2e-4 rad.
   EXPECT_GT(body.Torques()[0], -9.81 + 0.5);
   EXPECT_LE(body.Torques()[0], -9.81 + 1.5);
 }
@@ -101,7 +101,8 @@ TEST(VirtualRobot, TorquesAtRestAreThoseOfTheStatics) {
     robot.compliance.setConstant(1e-6);
     VirtualRobot body(robot, {}, 0.3 * RandomPosture(tree, random));
     ASSERT_TRUE(body.Settle());
-    // Evaluated where the links are: beyond the encoders by the springs' deflections.
+    // The torques are those at the links' positions, which differ from the encoders by the springs'
+    // deflections.
     const Eigen::VectorXd q = body.Encoders() - 1e-6 * body.Torques();
     const Eigen::VectorXd expected = GravityTorques(tree, q);
     EXPECT_LT((body.Torques() - expected).cwiseAbs().maxCoeff(), 1e-5 * (1.0 + expected.norm()));
@@ -130,7 +131,7 @@ TrueRobot NominalBiped() {
   return NominalRobot(biped.tree, biped.markers, FindLegs(biped.tree, biped.chains), {});
 }
 
-/// Any posture with bent legs.
+/// A random posture with bent legs.
 Eigen::VectorXd BentPosture(const RobotTree& tree) {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(tree.coordinate_count());
   for (const char* side : {"left", "right"}) {
@@ -142,7 +143,7 @@ Eigen::VectorXd BentPosture(const RobotTree& tree) {
   return q;
 }
 
-/// Height of all weight above the sole, times weight: the potential energy, J.
+/// Potential energy of the robot above its sole, J.
 double Potential(const TrueRobot& robot, const Leg& leg, const Eigen::VectorXd& positions) {
   const std::vector<Transform> T = TrueLinkTransforms(robot, positions);
   const Transform T_floor_waist =
@@ -188,7 +189,7 @@ TEST(VirtualRobot, FeetStayWhereTheyWerePutDown) {
   q[1] = 0.5;
   body.Command(q);
   ASSERT_TRUE(body.Settle());
-  // Constraints, not fixed bodies.
+  // The feet are held by constraints and not as fixed bodies.
   for (const auto& [sole, pose] : {std::pair{0, first}, std::pair{1, second}}) {
     const Transform now = body.SolePose(sole);
     EXPECT_LT((now.translation() - pose.translation()).norm(), 2e-6);
@@ -207,7 +208,7 @@ TEST(VirtualRobot, StandsFreeOnBothFeet) {
   for (int i = 0; i < 1000; ++i) body.Step();
   EXPECT_NEAR(body.WaistPose().translation().z(), height, 2e-3);
   EXPECT_LT(RotationAngle(body.WaistPose().linear()), 0.01);
-  // The floor is as firm as where feet are held: what gives way are the springs of the robot.
+  // The floor is as firm as the constraints that hold feet: only the robot's springs give way.
   for (int sole : {0, 1}) EXPECT_NEAR(body.SolePose(sole).translation().z(), 0.0, 5e-5);
 }
 

@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-/// Straight legs; springs only where a test puts them.
+/// A robot with straight legs, without springs.
 TrueRobot Rigid() {
   const Biped biped = MakeBiped();
   return NominalRobot(biped.tree, biped.markers, FindLegs(biped.tree, biped.chains), {});
@@ -18,8 +18,8 @@ Eigen::VectorXd Straight(const TrueRobot& robot) {
   return Eigen::VectorXd::Zero(robot.tree.coordinate_count());
 }
 
-/// The weight on a spring that leans adds to its push (a column about to buckle): the expected
-/// values are those of a robot without weight, so these tests leave next to none.
+/// A spring gives way more if weight leans on it (a column about to buckle). The expected values
+/// are for a robot without weight, so the tests use one with next to none.
 TrueRobot Weightless(TrueRobot robot) {
   for (Link& link : robot.tree.links) link.mass *= 1e-3;
   return robot;
@@ -30,7 +30,7 @@ TEST(LumpedWaistCompliance, OfAColumnOnASpringInItsFoot) {
   const Vector6d c{{1e-6, 2e-6, 3e-6, 1e-5, 2e-5, 3e-5}};
   robot.foot_compliance[0] = c;
   const WaistCompliance waist = LumpedWaistCompliance(robot, robot.legs[0], Straight(robot));
-  // The spring is half way between ankle and sole; the waist's origin stands above and beside it.
+  // The spring is half-way between ankle and sole. The waist's origin is above and beside it.
   const double h = 0.27 + 0.38 + 0.325 + 0.5 * 0.107;
   const double x = 0.02;
   const double y = -0.085;
@@ -74,7 +74,7 @@ TEST(LumpedWaistCompliance, IsThatOfTheSpringAndNotOfAPendulumOnIt) {
   TrueRobot robot = Rigid();
   robot.foot_compliance[0] << 0, 0, 0, 0, 2e-5, 0;
   const WaistCompliance waist = LumpedWaistCompliance(robot, robot.legs[0], Straight(robot));
-  // The weight would make it softer by m g h, some 450 N.m/rad.
+  // With its weight, the robot would be softer by m g h, some 450 N.m/rad.
   EXPECT_NEAR(waist.stiffness[4], 5e4, 20.0);
 }
 

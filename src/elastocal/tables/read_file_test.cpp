@@ -17,7 +17,7 @@ TEST(ReadFile, GivesAllBytes) {
   EXPECT_EQ(ReadFile(scratch.Write("empty", "")), "");
 }
 
-// A pipe that nobody writes to would keep the program waiting, a device would never end.
+// A pipe to which nobody writes would block the program, and a device would never end.
 TEST(ReadFile, TakesRegularFilesOnly) {
   const ScratchFolder scratch;
   const std::filesystem::path pipe = scratch.path() / "pipe";

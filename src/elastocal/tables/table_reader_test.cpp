@@ -13,7 +13,7 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-/// Header and rows.
+/// The header and all rows.
 std::vector<Cells> Rows(const std::string& text) {
   std::istringstream stream(text);
   Table table(stream, "t.csv");
@@ -27,7 +27,7 @@ std::vector<Cells> Rows(const std::string& text) {
   return rows;
 }
 
-/// Cells of a line; empty where it cannot be split.
+/// Cells of a line; empty if the line cannot be split.
 Cells Split(std::string line, char separator = ',', Quotes quotes = Quotes::kEnclose) {
   std::vector<std::string_view> cells;
   if (!SplitCells(line, separator, quotes, cells)) return {};
@@ -77,7 +77,7 @@ TEST(Table, NamesWhatIsNoTable) {
   EXPECT_EQ(Rows("a\n" + std::string(1 << 20, '0')).size(), 2u);
 }
 
-/// Lines of every length from 0 to 40, over many blocks of the reader, some of them quoted.
+/// Lines of all lengths from 0 to 40, some of them quoted, over many blocks of the reader.
 TEST(Table, LinesAcrossBlocksAreWhole) {
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     std::string text = "a,b" + end;

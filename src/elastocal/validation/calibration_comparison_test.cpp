@@ -12,7 +12,8 @@
 namespace elastocal {
 namespace {
 
-/// Three joints with theta and d each, sd 1 mrad and 1 mm, uncorrelated unless a test says so.
+/// Three joints with theta and d each. The standard deviations are 1 mrad and 1 mm, uncorrelated
+/// unless a test changes this.
 CalibrationEstimate ThreeJoints(const std::string& source) {
   CalibrationEstimate estimate;
   estimate.source = source;
@@ -61,7 +62,7 @@ TEST_F(CalibrationComparisonTest, IntervalAndTestByHand) {
   EXPECT_EQ(theta.name, "j2.theta");
   EXPECT_NEAR(theta.difference, 6e-3, 1e-15);
   EXPECT_NEAR(theta.sd, std::sqrt(2.0) * 1e-3, 1e-15);
-  EXPECT_NEAR(theta.degrees_of_freedom, 600.0, 1e-3);  // two equal variances of 300
+  EXPECT_NEAR(theta.degrees_of_freedom, 600.0, 1e-3);  // of two equal variances with 300 each
   EXPECT_NEAR(theta.half_width, theta.sd * StudentQuantile(0.975, 600.0), 1e-12);
   EXPECT_TRUE(theta.significant());
   const JointDifference& first = comparison.joints[0];
@@ -75,7 +76,7 @@ TEST_F(CalibrationComparisonTest, IntervalAndTestByHand) {
   EXPECT_FALSE(comparison.joints[2].moved);
 }
 
-// Each parameter of j1 alone is within its interval; together, against their correlation, not.
+// Each parameter of j1 is within its own interval. Together they contradict their correlation.
 TEST_F(CalibrationComparisonTest, AJointIsTestedAsAWhole) {
   for (CalibrationEstimate* side : {&a_, &b_}) {
     side->covariance(0, 1) = side->covariance(1, 0) = 0.99e-6;
@@ -87,7 +88,7 @@ TEST_F(CalibrationComparisonTest, AJointIsTestedAsAWhole) {
   EXPECT_FALSE(comparison.parameters[1].significant());
   EXPECT_EQ(comparison.joints[0].joint, "j1");
   EXPECT_TRUE(comparison.joints[0].moved);
-  // Without the covariance of both nobody can see it.
+  // Without the covariances of both this cannot be seen.
   a_.covariance_names.clear();
   const CalibrationComparison blind = Compared();
   EXPECT_FALSE(blind.with_covariance);
@@ -97,7 +98,7 @@ TEST_F(CalibrationComparisonTest, AJointIsTestedAsAWhole) {
   EXPECT_NE(blind.warnings[0].find("covariance.csv"), std::string::npos);
 }
 
-// j1.theta and j2.theta can hardly be told apart: their difference is known, their sum is not.
+// The data tell the difference of j1.theta and j2.theta, but hardly their sum.
 TEST_F(CalibrationComparisonTest, SuspectsWhereNoJointCanBeSingledOut) {
   for (CalibrationEstimate* side : {&a_, &b_}) {
     side->covariance(0, 2) = side->covariance(2, 0) = 0.999e-6;
@@ -132,7 +133,7 @@ TEST_F(CalibrationComparisonTest, Warnings) {
   EXPECT_NE(comparison.warnings[2].find("A alone estimates j2.d: "), std::string::npos);
 }
 
-// B alone has a cause, which takes 3 mrad of j1.theta; without it both say the same.
+// Only B has a cause, which explains 3 mrad of j1.theta. Without this cause, both agree.
 TEST_F(CalibrationComparisonTest, UnderWhatBothModelsHave) {
   b_.parameters.push_back({.name = "j1.gear", .unit = "1", .value = 5e-3, .sd = 1e-3});
   b_.covariance_names.emplace_back("j1.gear");
@@ -142,7 +143,7 @@ TEST_F(CalibrationComparisonTest, UnderWhatBothModelsHave) {
   b_.covariance(6, 6) = 1e-6;
   b_.covariance(0, 6) = b_.covariance(6, 0) = -0.6e-6;
   b_.parameters[0].value -= 3e-3;
-  b_.parameters[1].value += 1e-3;  // uncorrelated with the cause: stays
+  b_.parameters[1].value += 1e-3;  // does not change: uncorrelated with the cause
   const CalibrationComparison comparison = Compared();
   EXPECT_NEAR(comparison.parameters[0].difference, 0.0, 1e-15);
   const double noise = (300.0 + 25.0) / (300.0 + 1.0);  // with the 5 sd that the cause explained
@@ -151,14 +152,14 @@ TEST_F(CalibrationComparisonTest, UnderWhatBothModelsHave) {
   EXPECT_NEAR(comparison.parameters[1].sd, std::sqrt((1.0 + noise) * 1e-6), 1e-10);
   ASSERT_EQ(comparison.warnings.size(), 1u);
   EXPECT_NE(comparison.warnings[0].find("B alone estimates j1.gear: "), std::string::npos);
-  // The same the other way round, with the sign of the difference.
+  // With both exchanged, differences have the other sign.
   std::swap(a_, b_);
   const CalibrationComparison turned = Compared();
   EXPECT_NEAR(turned.parameters[0].difference, 0.0, 1e-15);
   EXPECT_NEAR(turned.parameters[1].difference, -1e-3, 1e-15);
 }
 
-// A compliance is what turns by a load: where B has other loads than A it means something else.
+// A compliance turns a joint by its load. If B has other loads than A, it means something else.
 TEST_F(CalibrationComparisonTest, SpringsOnlyUnderTheSameLoads) {
   for (CalibrationEstimate* side : {&a_, &b_}) {
     side->parameters[1].name = side->covariance_names[1] = "j1.compliance_z";
@@ -175,9 +176,9 @@ TEST_F(CalibrationComparisonTest, SpringsOnlyUnderTheSameLoads) {
   EXPECT_NE(comparison.not_compared[1].reason.find("loads"), std::string::npos);
 }
 
-/// Adds `count` markers on j3's link. j3.theta, which carries them along y, and j2.theta, along x,
-/// are told from them as one piece to 20 mrad only: by a lever of 100 mm, each coordinate is known
-/// to 0.05 mm beside its joint.
+/// Adds `count` markers on j3's link. As one piece, they can be exchanged with j3.theta, which
+/// moves them along y, and with j2.theta, along x, to 20 mrad. The lever is 100 mm; relative to its
+/// joint, each coordinate is known to 0.05 mm.
 void AddCluster(CalibrationEstimate& estimate, int count) {
   constexpr double kLever = 0.1, kTold = 5e-5, kTheta = 2e-2;
   const Eigen::Index at = estimate.covariance.rows();
@@ -215,14 +216,15 @@ class MarkersOfTwoDays : public CalibrationComparisonTest {
   double& MarkerInB(int marker, int axis) {
     return b_.parameters[Size(7 + 3 * marker + axis)].value;
   }
-  /// j3 by 5 mrad: each estimate is the most probable one, so half of it is in the markers' places.
+  /// Turns j3 by 5 mrad. Each estimate is the most probable one, so that half of the turn appears
+  /// in the markers' positions.
   void TurnJoint() {
     b_.parameters[4].value += 2.5e-3;
     for (int m = 0; 7 + 3 * m < std::ssize(b_.parameters); ++m) MarkerInB(m, 1) += 2.5e-4;
   }
 };
 
-// All differences lie within their intervals; but the markers are where they were, if j3 turned.
+// All differences are within their intervals. But the markers are unchanged if j3 turned.
 TEST_F(MarkersOfTwoDays, ThatStayedTellOfATurnedJoint) {
   AddClusters(3);
   TurnJoint();
@@ -238,7 +240,7 @@ TEST_F(MarkersOfTwoDays, ThatStayedTellOfATurnedJoint) {
   EXPECT_NEAR(comparison.parameters[4].b - comparison.parameters[4].a, 2.5e-3, 1e-12);
   EXPECT_NEAR(comparison.parameters[4].difference, 5e-3, 5e-6);
   EXPECT_NEAR(comparison.parameters[4].sd, std::sqrt((2.0 * 2.5e-9 + 1e-8) / 3.0) / 0.1, 1e-6);
-  // Whoever took them off says so, and then nothing is known of j3.
+  // If the user states that they were taken off, nothing is known about j3.
   const CalibrationComparison anew = CompareCalibrations(a_, b_, {.new_markers = true});
   EXPECT_TRUE(anew.markers.empty());
   EXPECT_FALSE(anew.changed);
@@ -257,7 +259,7 @@ TEST_F(MarkersOfTwoDays, GluedAnewTellNothing) {
   EXPECT_NEAR(comparison.parameters[4].difference, 2.5e-3, 1e-12);
 }
 
-// Turned together, j2 and j3 would have done it; but one cluster that moved explains it alone.
+// j2 and j3 might have turned together, but one cluster that moved explains this alone.
 TEST_F(MarkersOfTwoDays, MayHaveMovedAsOnePiece) {
   AddClusters(3);
   TurnJoint();
@@ -278,7 +280,7 @@ TEST_F(MarkersOfTwoDays, ThreeOnALinkAreNeeded) {
   EXPECT_FALSE(Compared().changed);
 }
 
-// The second project has a marker elsewhere, and its estimate deviates from there.
+// The second project has a marker at another place, and its estimate is relative to that place.
 TEST_F(MarkersOfTwoDays, AreComparedWhereTheyAre) {
   AddClusters(3);
   TurnJoint();
@@ -290,7 +292,7 @@ TEST_F(MarkersOfTwoDays, AreComparedWhereTheyAre) {
   EXPECT_TRUE(Compared().markers.empty());
 }
 
-// A gauge that puts markers where they are leaves nothing uncertain of some combinations.
+// A gauge that fixes markers leaves no uncertainty to some combinations.
 TEST_F(MarkersOfTwoDays, MayDefineTheFrame) {
   AddClusters(3);
   for (CalibrationEstimate* side : {&a_, &b_}) {

@@ -56,12 +56,12 @@ TEST(FixedIn, WhatTheOtherModelKeepsAtAValue) {
   const std::vector<FixedParameter> fixed = FixedIn(a, b);
   EXPECT_EQ(FixedNames(fixed), (Strings{"j1.d", "j1.b", "j1.compliance_z", "j2.gear", "link.mass",
                                         "link.moment_x", "gravity.tilt_x"}));
-  EXPECT_EQ(fixed[0].value, 0.5);  // where it is held
+  EXPECT_EQ(fixed[0].value, 0.5);  // the value at which it is held
   EXPECT_EQ(fixed[3].value, 0.0);
   EXPECT_TRUE(FixedIn(b, a).empty());
 }
 
-// What A never carried says nothing of what B found there.
+// A never carried these parts, so it tells nothing about B's findings there.
 TEST(FixedIn, NotOfJointsThatTheOtherDoesNotKnow) {
   using enum ParameterStatus;
   const CalibrationEstimate a = CalibrationWith({{"j1.theta", kEstimated}});
@@ -72,7 +72,7 @@ TEST(FixedIn, NotOfJointsThatTheOtherDoesNotKnow) {
   EXPECT_TRUE(FixedIn(a, b).empty());
 }
 
-// The conditional mean and covariance of a normal distribution, by hand: units far apart.
+// Conditional mean and covariance of a normal distribution by hand, with very different units.
 TEST(Conditioned, ByHand) {
   using enum ParameterStatus;
   CalibrationEstimate estimate =
@@ -97,14 +97,14 @@ TEST(Conditioned, ByHand) {
   EXPECT_NEAR(found.parameters[0].sd, 0.6e-3, 1e-15);
   EXPECT_NEAR(found.parameters[1].sd, std::sqrt(0.75), 1e-12);
   EXPECT_NEAR(found.covariance(0, 1), (0.2 - 0.8 * 0.5) * 1e-3, 1e-15);
-  // One after the other is both at once.
+  // Conditioning one by one is the same as conditioning at once.
   const CalibrationEstimate both = Conditioned(estimate, {{"z", 200.0}, {"y", 3.0}});
   const CalibrationEstimate after = Conditioned(found, {{"y", 3.0}});
   EXPECT_NEAR(both.parameters[0].value, after.parameters[0].value, 1e-15);
   EXPECT_NEAR(both.parameters[0].sd, after.parameters[0].sd, 1e-15);
 }
 
-// A fit that may not use z leaves its squares to the noise.
+// Without z, the fit counts its squares as noise.
 TEST(Conditioned, TheNoiseIsLarger) {
   using enum ParameterStatus;
   CalibrationEstimate estimate = CalibrationWith({{"x", kEstimated}, {"z", kEstimated}});
@@ -113,10 +113,10 @@ TEST(Conditioned, TheNoiseIsLarger) {
   estimate.interval_factor = StudentQuantile(0.975, 20.0);
   EXPECT_NEAR(Conditioned(estimate, {{"z", 6.5}}).parameters[0].sd,
               std::sqrt((20.0 + 36.0) / (20.0 + 1.0)), 1e-6);
-  EXPECT_EQ(Conditioned(estimate, {{"z", 0.5}}).parameters[0].sd, 1.0);  // it explained nothing
+  EXPECT_EQ(Conditioned(estimate, {{"z", 0.5}}).parameters[0].sd, 1.0);  // z explained nothing
 }
 
-// Without z the spring would be negative, so it stays at 0, and x follows.
+// Without z the spring would be negative. It therefore stays at 0, and x changes accordingly.
 TEST(Conditioned, SpringsAreNotNegative) {
   using enum ParameterStatus;
   CalibrationEstimate estimate =
@@ -131,7 +131,7 @@ TEST(Conditioned, SpringsAreNotNegative) {
   const CalibrationEstimate found = Conditioned(estimate, {{"z", 0.0}});
   EXPECT_EQ(found.parameters[1].value, 0.0);
   EXPECT_EQ(found.parameters[1].status, kHeld);
-  // x by both: the weights solve [1 0.8; 0.8 1] w = [-0.5, -2].
+  // Both determine x: the weights solve [1 0.8; 0.8 1] w = [-0.5, -2].
   EXPECT_NEAR(found.parameters[0].value, 0.5 + 0.5 * (-0.5 + 1.6) / 0.36, 1e-12);
   EXPECT_EQ(found.covariance_names, Strings{"x"});
 }

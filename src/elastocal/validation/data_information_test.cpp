@@ -8,7 +8,7 @@
 namespace elastocal {
 namespace {
 
-constexpr double kA = 4.0, kY = 1.5;  // one unknown, measured as 1.5 with a variance of 1/4
+constexpr double kA = 4.0, kY = 1.5;  // one unknown: measured 1.5, variance 1/4
 
 double ByHand(double mean, double variance) {
   return -0.5 * std::pow(kY - mean, 2) / (variance + 1.0 / kA) - 0.5 * std::log1p(kA * variance) +
@@ -27,7 +27,7 @@ TEST(LogEvidence, OfOneUnknownByHand) {
   }
 }
 
-// Two unknowns of which the data tell the sum alone: the covariance of the sum counts.
+// The data tell only the sum of two unknowns. Its covariance counts.
 TEST(LogEvidence, OfACombination) {
   DataInformation data;
   data.information = Eigen::MatrixXd::Constant(2, 2, kA);

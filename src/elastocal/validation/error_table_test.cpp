@@ -36,7 +36,7 @@ TEST(TrialErrors, OverMarkersOfTheGroupThatAllModelsPredict) {
   TrialResiduals residuals = Residuals("leg", TrialKind::kSine, none, geometric);
   residuals.markers = {2, 0};
   const TrialErrors errors = ComputeTrialErrors(residuals);
-  EXPECT_EQ(errors.metrics.at(kNone).observations, 2);  // of the first posture
+  EXPECT_EQ(errors.metrics.at(kNone).observations, 2);  // those of the first posture
   EXPECT_DOUBLE_EQ(errors.metrics.at(kNone).rmse_3d, std::sqrt(12.5));
   EXPECT_DOUBLE_EQ(errors.metrics.at(kNone).maximum, 4.0);
   EXPECT_DOUBLE_EQ(errors.metrics.at(kGeometric).rmse_3d, std::sqrt(2.5));
@@ -69,7 +69,7 @@ TEST(ErrorTable, RowsByGroupThenKindWithTrialsPooled) {
   EXPECT_DOUBLE_EQ(table.mean_rmse_3d.at(kNone), (std::sqrt(28.0) + 2.0 + 3.0) / 3.0);
 }
 
-// The mean of the rows that the paper prints for its full model is the figure of its text, 2.2 mm.
+// The mean of the paper's rows for its full model must be the figure in its text, 2.2 mm.
 TEST(ErrorTable, AveragesAsThePaperDoes) {
   std::vector<TrialErrors> trials;
   const double full[] = {2.9, 1.9, 1.9, 2.4, 1.9, 2.5, 1.8, 2.2};
@@ -95,7 +95,7 @@ TEST(ErrorTable, ModelsThatATrialDoesNotHaveAndTrialsWithoutObservations) {
   EXPECT_EQ(table.mean_rmse_3d.size(), 1u);
   EXPECT_DOUBLE_EQ(table.mean_rmse_3d.at(kNone), 2.0);
   EXPECT_TRUE(MakeErrorTable({}).mean_rmse_3d.empty());
-  // An unseen trial beside a seen one changes nothing.
+  // A trial in which nothing was seen changes nothing.
   const ErrorTable beside = MakeErrorTable(
       {Errors("leg", TrialKind::kSine, kNaN, 1), Errors("leg", TrialKind::kSine, 3, 1)});
   EXPECT_DOUBLE_EQ(beside.rows[0].metrics.at(kNone).rmse_3d, 3.0);

@@ -12,7 +12,7 @@ namespace {
 
 Transform At(double x, double y, double z) { return FromXyzRpy({x, y, z}, {0.0, 0.0, 0.0}); }
 
-/// Waists predicted at x = 0, 1, 2, ...; footing by posture.
+/// Waists are predicted at x = 0, 1, 2, ...; `footing` is that of each posture.
 Placement Predicted(const std::vector<int>& footing) {
   Placement placement;
   placement.footings = {{0, 0, {}}};
@@ -24,13 +24,13 @@ Placement Predicted(const std::vector<int>& footing) {
 }
 
 TEST(WaistError, IsTheRootMeanSquareBesideAConstantShift) {
-  // Off by 1, 2 and 6 mm along z: about their mean of 3 mm by 2, 1 and 3 mm.
+  // The errors along z are 1, 2 and 6 mm. They differ from their mean, 3 mm, by 2, 1 and 3 mm.
   EXPECT_NEAR(WaistError(Predicted({0, 0, 0}), {At(0, 0, 1e-3), At(1, 0, 2e-3), At(2, 0, 6e-3)}),
               std::sqrt((4.0 + 1.0 + 9.0) / 3.0) * 1e-3, 1e-15);
 }
 
 TEST(WaistError, TheShiftIsThatOfPosturesOnTwoFeetWhereThereAreAny) {
-  // On two feet by 1 mm; so on one foot by 3 and 4 mm.
+  // The error on two feet is 1 mm. The errors on one foot differ from it by 3 and 4 mm.
   EXPECT_NEAR(WaistError(Predicted({-1, 0, 0}), {At(0, 1e-3, 0), At(1, 4e-3, 0), At(2, -3e-3, 0)}),
               std::sqrt((9.0 + 16.0) / 2.0) * 1e-3, 1e-15);
 }

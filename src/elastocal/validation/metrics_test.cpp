@@ -32,8 +32,8 @@ TEST(Metrics, NothingObservedIsNotZeroError) {
   EXPECT_TRUE(std::isnan(metrics.marker_rmse_3d[0]));
 }
 
-// Squares 1 and 9 in turn: their mean is 5, its standard deviation over ten units
-// sqrt(160 / 9 / 10) = 4 / 3; Student's t of 9 degrees of freedom is 2.262 (tables).
+// The squares are 1 and 9 in turn. Their mean is 5, whose standard deviation over ten units is
+// sqrt(160 / 9 / 10) = 4 / 3. Student's t with 9 degrees of freedom is 2.262 (tables).
 TEST(RmseInterval, HandValues) {
   Eigen::MatrixXd distances(10, 1);
   std::vector<int> unit_of;
@@ -49,10 +49,10 @@ TEST(RmseInterval, HandValues) {
   EXPECT_FALSE(IntervalOfRmse(distances.topRows(4), {0, 1, 2, 3}));
 }
 
-// Postures that err by (1 mm, one marker) are measured three times each, and 24 of them are what
-// two markers of a hand show: 95 % of the intervals hold the RMSE of all such postures. Taken for
-// independent, the 72 rows promise too much. 1000 draws have a standard deviation of 0.7 %; squares
-// of three coordinates are skew, which costs some 2 %.
+// Each of 24 postures is measured three times and has one error, seen by two markers of a hand. 95
+// % of the intervals contain the RMSE of all such postures. If the 72 rows counted as independent,
+// fewer would. The share over 1000 draws has a standard deviation of 0.7 %. Squares of three
+// coordinates are skew, which costs some 2 %.
 TEST(RmseInterval, HoldsTheErrorOfOtherPosturesOfItsKind) {
   Random random(5);
   constexpr int kDraws = 1000, kUnits = 24, kRows = 3 * kUnits;

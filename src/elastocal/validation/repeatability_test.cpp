@@ -15,8 +15,8 @@ namespace {
 const std::vector<int> kWaist = {0, 1};
 const std::vector<int> kHand = {2, 3};
 
-/// Two markers at the waist about the origin and two about a point `distance` away along x; one
-/// joint.
+/// Adds a posture of one joint, with two markers at the waist about the origin and two about a
+/// point that is `distance` away along x.
 void Add(Recording& recording, double q, double distance, double time_s) {
   recording.marker_names = {"W_1", "W_2", "H_1", "H_2"};
   const Eigen::Index i = recording.q.rows();
@@ -32,17 +32,18 @@ Repeatability Assessed(const Recording& recording) {
   return AssessRepeatability(recording, kWaist, kHand, {});
 }
 
-// Posture 0.1 at 1.0 m, then posture 0.5, each three times; the middle one is one sample of two.
+// Posture 0.1 at 1.0 m, then posture 0.5, three times each. One of these repetitions has two
+// samples.
 Recording ThreeCycles() {
   Recording recording;
   Add(recording, 0.1, 1.000, 0.0);
   Add(recording, 0.5, 0.800, 5.0);
   Add(recording, 0.1, 1.001, 10.0);
-  Add(recording, 0.1, 1.003, 10.5);  // the same hold: mean 1.002
+  Add(recording, 0.1, 1.003, 10.5);  // the same hold: its mean is 1.002
   Add(recording, 0.5, 0.803, 15.0);
   Add(recording, 0.1, 1.004, 20.0);
   Add(recording, 0.5, 0.800, 25.0);
-  Add(recording, 0.9, 0.500, 30.0);  // once
+  Add(recording, 0.9, 0.500, 30.0);  // not repeated
   return recording;
 }
 
@@ -54,11 +55,12 @@ TEST(Repeatability, ByHand) {
   EXPECT_EQ(result.repetitions, 6);
   EXPECT_EQ(result.not_repeated, 1);
   EXPECT_EQ(result.left_out, 0);
-  // Deviations in mm: 2, 0, 2 and 1, 2, 1.
+  // The deviations in mm are 2, 0, 2 and 1, 2, 1.
   EXPECT_NEAR(result.mean_deviation, 8.0 / 6.0 * 1e-3, 1e-12);
   EXPECT_NEAR(result.sd_deviation, std::sqrt((14.0 - 64.0 / 6.0) / 5.0) * 1e-3, 1e-12);
   EXPECT_NEAR(result.distance_sd, std::sqrt(14.0 / 4.0) * 1e-3, 1e-12);
-  // 1 and 3 mm scatter by sqrt(2) mm; a mean of two by 1; of the six, five are single samples.
+  // 1 and 3 mm scatter by sqrt(2) mm, and the mean of two by 1 mm. Five of the six repetitions are
+  // single samples.
   EXPECT_NEAR(result.noise_sd, std::sqrt(2.0 * (5.0 + 0.5) / 6.0) * 1e-3, 1e-12);
 }
 
@@ -82,7 +84,7 @@ TEST(Repeatability, OnlyTheGivenJointsCount) {
             2u);
 }
 
-// A marker that is missing once would move the centre by 20 cm if the others were averaged.
+// If a marker is missing once, the mean of the others would move the centre by 20 cm.
 TEST(Repeatability, CentresAreOfTheSameMarkers) {
   Recording recording = ThreeCycles();
   recording.markers.row(5).segment(9, 3).setConstant(kNaN);
@@ -91,7 +93,7 @@ TEST(Repeatability, CentresAreOfTheSameMarkers) {
   EXPECT_EQ(result.postures[1].effector_markers, kHand);
   EXPECT_NEAR(result.postures[0].distances[2] - result.postures[0].distances[0],
               std::hypot(1.004, 0.2) - std::hypot(1.0, 0.2), 1e-12);
-  // Seen in one sample of the hold: enough.
+  // It suffices that one sample of the hold shows the marker.
   recording = ThreeCycles();
   recording.markers.row(3).segment(9, 3).setConstant(kNaN);
   EXPECT_EQ(Assessed(recording).postures[0].effector_markers, kHand);
@@ -124,8 +126,9 @@ TEST(Repeatability, NothingRepeatedIsNotPerfect) {
   EXPECT_THROW(AssessRepeatability(recording, kWaist, {4}, {}), std::invalid_argument);
 }
 
-// Noise of 0.2 mm a coordinate, ten samples a hold, two markers a cluster: the distance scatters
-// by 0.2 sqrt(2 / 20) mm; the robot by 0.05 mm besides. 400 repetitions are good to 4 % (1 sd).
+// The noise is 0.2 mm a coordinate, with ten samples a hold and two markers a cluster. So the
+// distance scatters by 0.2 sqrt(2 / 20) mm, and the robot adds 0.05 mm. 400 repetitions tell this
+// to 4 % (one standard deviation).
 TEST(Repeatability, NoiseIsToldFromTheRobot) {
   constexpr double kNoise = 0.2e-3;
   constexpr double kRobot = 0.05e-3;

@@ -26,16 +26,17 @@ Differences TwoCorrelated(double freedom) {
 }
 
 TEST(TestDifferences, MahalanobisDistanceByHand) {
-  // Sum: unit variances, correlation 0.6; the inverse has 1 / 0.64 on its diagonal.
+  // The sum has unit variances and correlation 0.6. Its inverse has 1 / 0.64 on the diagonal.
   const DifferenceTest test = TestDifferences(TwoCorrelated(kInfinity), {0, 1});
   EXPECT_NEAR(test.statistic, 4.0 / 0.64 / 2.0, 1e-12);
   EXPECT_EQ(test.parameters, 2);
-  EXPECT_NEAR(test.p, std::exp(-0.5 * 4.0 / 0.64), 1e-12);  // chi-square with two
+  EXPECT_NEAR(test.p, std::exp(-0.5 * 4.0 / 0.64), 1e-12);  // chi-square, two degrees
   const DifferenceTest alone = TestDifferences(TwoCorrelated(kInfinity), {0});
   EXPECT_NEAR(alone.p, StudentTwoSidedTail(2.0, kInfinity), 1e-12);
 }
 
-// If the first may be anything, the second is 0.6 times it at no cost: nothing is left.
+// If the first may have any value, it explains the second, which is 0.6 times the first. Nothing
+// remains.
 TEST(TestDifferences, FreeOnesExplainWhatTheyCan) {
   const DifferenceTest rest = TestDifferences(TwoCorrelated(kInfinity), {0, 1}, {0});
   EXPECT_EQ(rest.parameters, 1);
@@ -43,8 +44,8 @@ TEST(TestDifferences, FreeOnesExplainWhatTheyCan) {
   EXPECT_NEAR(TestDifferences(TwoCorrelated(kInfinity), {0, 1}, {1}).statistic, 4.0, 1e-12);
 }
 
-// Unit variances, correlation 0.6: where the first is known to be 0, -1.2 of its 2 are taken from
-// the second, and its variance is 1 - 0.36.
+// The variances are 1 and the correlation is 0.6. If the first is known to be 0, the second is less
+// by 0.6 times the first's 2, and its variance is 1 - 0.36.
 TEST(GivenNone, ConditionalNormalByHand) {
   const Differences given = GivenNone(TwoCorrelated(kInfinity), {1}, {0});
   EXPECT_NEAR(given.values[0], -1.2, 1e-12);
@@ -85,8 +86,8 @@ TEST(PooledFreedom, IsWelchs) {
   EXPECT_EQ(PooledFreedom(d, 0.3), kInfinity);
 }
 
-// Covariances known but for a factor, which is estimated with few degrees of freedom: chi-square
-// would reject 12 % here. 20000 trials have a standard deviation of 0.15 %.
+// The covariances are known up to a factor, which is estimated with few degrees of freedom.
+// Chi-square would reject 12 %. The share of 20000 trials has a standard deviation of 0.15 %.
 TEST(TestDifferences, FiveInAHundredWithoutAChange) {
   Random random(1);
   const double freedom = 8.0;
@@ -101,7 +102,7 @@ TEST(TestDifferences, FiveInAHundredWithoutAChange) {
     d.covariance_a = scale * root * root.transpose();
     d.covariance_b.setZero(3, 3);
     d.freedom_a = freedom;
-    d.freedom_b = 1.0;  // of no weight
+    d.freedom_b = 1.0;  // has no weight
     rejected += TestDifferences(d, {0, 1, 2}).p <= 0.05 ? 1 : 0;
   }
   EXPECT_NEAR(static_cast<double>(rejected) / kTrials, 0.05, 0.005);

@@ -12,7 +12,7 @@ namespace {
 
 class VerdictTest : public ::testing::Test {
  protected:
-  /// A comparison that nothing can be said against.
+  /// Sets a comparison without objections.
   void SetUp() override {
     comparison_.kinds = {ModelKind::kUncalibrated, ModelKind::kOffsetsOnly, ModelKind::kGeometric};
     CalibrationResult& result = comparison_.results[2];
@@ -91,7 +91,7 @@ TEST_F(VerdictTest, PriorAtItsLimit) {
   ExpectObjection("lengths are more than ten times");
 }
 
-// A perfect fit may have it: of a sliding joint before it the sign is reversed.
+// Even a perfect fit may have such an axis, if the sign of a sliding joint before it is reversed.
 TEST_F(VerdictTest, AnAxisTurnedByHalfATurnIsNoRobots) {
   CalibrationResult& result = comparison_.results[2];
   result.delta[FindParameter(result.model.parameters, "leg_3.alpha")] = 3.1;
@@ -99,7 +99,7 @@ TEST_F(VerdictTest, AnAxisTurnedByHalfATurnIsNoRobots) {
   EXPECT_NE(Judged().objections[0].find("leg_2"), std::string::npos) << Judged().objections[0];
 }
 
-// One reversed sign turns all axes behind it: one sentence.
+// A reversed sign turns all axes behind it, so they make one sentence.
 TEST_F(VerdictTest, TurnedAxesAreOneObjection) {
   CalibrationResult& result = comparison_.results[2];
   result.delta[FindParameter(result.model.parameters, "leg_3.alpha")] = 3.1;
@@ -111,7 +111,7 @@ TEST_F(VerdictTest, TurnedAxesAreOneObjection) {
 TEST_F(VerdictTest, ParametersThatLeanOnThePriorAlone) {
   excitation_.parameters = {6, 7, 8, 9};
   excitation_.parameter_sd = Eigen::Vector4d(0.1, 0.1, 1e-4, 1e-4);
-  EXPECT_TRUE(Judged().objections.empty());  // aligned axes: some can be told together only
+  EXPECT_TRUE(Judged().objections.empty());  // aligned axes: only their sum is told
   excitation_.parameter_sd[2] = std::numeric_limits<double>::infinity();
   ExpectObjection("do not determine the parameters (3 of 4");
 }
@@ -131,19 +131,19 @@ TEST(JudgeDeployment, ObjectsToAUrdfThatIsWorse) {
   Deployment deployment{.judged_on = "held-out postures",
                         .uncalibrated = 3e-3,
                         .urdf = 3.2e-3,
-                        .compensated = 1e-3};  // which the user of a URDF does not have
+                        .compensated = 1e-3};  // the user of a URDF does not have it
   Verdict verdict;
   JudgeDeployment(deployment, 8e-3, verdict);
   ASSERT_EQ(verdict.objections.size(), 1u);
   EXPECT_NE(verdict.objections[0].find("3.2 mm against 3 mm"), std::string::npos);
   verdict = {};
-  deployment.urdf = 3.01e-3;  // a robot that was calibrated before
+  deployment.urdf = 3.01e-3;  // the robot was calibrated before
   JudgeDeployment(deployment, 8e-3, verdict);
   EXPECT_TRUE(verdict.objections.empty());
   EXPECT_EQ(verdict.remarks.size(), 1u);
   verdict = {};
   deployment.uncalibrated = 300e-3;
-  deployment.urdf = 190e-3;  // better, and no calibrated robot
+  deployment.urdf = 190e-3;  // better, but not like a calibrated robot
   JudgeDeployment(deployment, 8e-3, verdict);
   ASSERT_EQ(verdict.objections.size(), 1u);
   EXPECT_NE(verdict.objections[0].find("190 mm"), std::string::npos);
@@ -165,7 +165,8 @@ ErrorTable HeldOutTable(const std::map<ModelKind, double>& rmse) {
   return table;
 }
 
-// Two markers in postures of 30 and 40 mm (35.4 mm rms) among good ones; a robot errs by 7 mm.
+// Two markers err by 30 and 40 mm (35.4 mm rms) in some postures among good ones. The robot errs by
+// 7 mm.
 TEST(JudgePostures, ObjectsWhereManyPosturesAreNoRobots) {
   Recording recording;
   recording.trials.resize(2);
@@ -206,7 +207,7 @@ TEST(JudgeHeldOut, ObjectsToWhatErrsNoLessThanTheUncalibratedRobot) {
   JudgeHeldOut(HeldOutTable({{kUncalibrated, 2e-3}, {kGeometric, 0.5e-3}, {kFull, 1e-3}}), kFull,
                kGeometric, verdict);
   EXPECT_TRUE(verdict.objections.empty());
-  ASSERT_EQ(verdict.remarks.size(), 1u);  // a simpler model does better: worth knowing, deployable
+  ASSERT_EQ(verdict.remarks.size(), 1u);  // a simpler model is better: a remark, but deployable
   EXPECT_NE(verdict.remarks[0].find("leg_left"), std::string::npos);
   EXPECT_NE(verdict.remarks[0].find("geometric"), std::string::npos);
   verdict = {};

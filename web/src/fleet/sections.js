@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of the page of a fleet: `elastocal batch` writes it.
+// The sections of a fleet's page, which `elastocal batch` writes.
 import {OKABE_ITO} from '../lib/colours.js';
 import {toCsv} from '../lib/csv.js';
 import {h} from '../lib/dom.js';
@@ -32,7 +32,7 @@ function fact(value, unit, what) {
   return h('div', {class: 'fact'}, h('dt', {}, what), h('dd', {}, value, unit && h('span', {class: 'unit'}, ` ${unit}`)));
 }
 
-/** The fleet in one sentence, and its figures. */
+/** The verdict on the fleet in one sentence, and its figures. */
 export function fleetVerdictSection(report) {
   const robots = robotRows(report);
   const {state, fine, refused, failed, workshop} = fleetVerdict(robots);
@@ -55,7 +55,7 @@ export function fleetVerdictSection(report) {
 
 const parameterNames = (names) => list(names, 3);
 
-/** A row a robot, those that need a look first. */
+/** A row for each robot. Those that need attention come first. */
 export function fleetRobotsSection(report) {
   const robots = robotRows(report);
   if (robots.length === 0) return null;
@@ -87,7 +87,7 @@ export function outOfFamilySection(report) {
     data: {name: 'out_of_family.csv', text: () => toCsv(['robot', 'parameter', 'unit', 'value', 'family', 'sd', 'p_adjusted'], all.map((o) => [o.robot, o.parameter, o.unit, o.value, o.family, o.sd, o.p_adjusted]))}}));
 }
 
-/** The maker's batches side by side, and where one is unlike the others. */
+/** Comparison of the maker's batches, and where one is unlike the others. */
 export function batchesSection(report) {
   const rows = batchRows(robotRows(report));
   if (rows.length < 2) return null;
@@ -117,7 +117,7 @@ function driftPlot(drift) {
       data: [sessions.map((s) => s.day), sessions.map((s) => factor * s.value), sessions.map((s) => factor * (value + drift.per_day * (s.day - day)))]}));
 }
 
-/** What changes from session to session. */
+/** Parameters that change from session to session. */
 export function driftSection(report) {
   const all = report.fleet.drifts ?? [];
   const dated = report.sessions.some((s) => typeof s.day === 'number');
@@ -132,7 +132,7 @@ export function driftSection(report) {
         all.flatMap((d) => (d.sessions ?? []).map((s) => [d.robot, d.parameter, d.unit, d.per_day, d.sd, d.p_adjusted, s.day, s.value, s.sd])))}}));
 }
 
-/** Mean and scatter of every parameter: what the next robot will be like. */
+/** Mean and scatter of every parameter, which predict the next robot. */
 export function familySection(report) {
   const all = report.family ?? [];
   if (all.length === 0) return null;
@@ -143,7 +143,7 @@ export function familySection(report) {
       data: {name: 'family.csv', text: () => toCsv(['parameter', 'unit', 'mean', 'sd', 'robots'], all.map((p) => [p.parameter, p.unit, p.mean, p.sd, p.robots]))}})));
 }
 
-/** Sessions that failed or are no members of the family. */
+/** Sessions that failed or do not belong to the family. */
 export function fleetNotesSection(report) {
   const failed = report.sessions.filter((s) => s.exit_code !== 0 && s.exit_code !== 4);
   const notes = [...failed.map((s) => `${s.name}: no result (exit code ${s.exit_code}); see ${s.name}.log`), ...(report.fleet.notes ?? [])];

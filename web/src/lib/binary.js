@@ -6,7 +6,7 @@ function bytes(base64) {
   return result;
 }
 
-/** Little-endian 32-bit floats from base64; the NaNs of unseen markers are kept. */
+/** Little-endian 32-bit floats from base64. NaN means an unseen marker. */
 export function floats(base64) {
   const view = new DataView(bytes(base64 ?? '').buffer);
   const result = new Float32Array(view.byteLength / 4);
@@ -14,15 +14,15 @@ export function floats(base64) {
   return result;
 }
 
-/** Deflated bytes (zlib), from base64. */
+/** Inflates deflated bytes (zlib) from base64. */
 export async function inflated(base64) {
   const stream = new Blob([bytes(base64 ?? '')]).stream().pipeThrough(new DecompressionStream('deflate'));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
 /**
- * Integers of rows of `width`, from bytes: each as the difference to the row before (of the first: to zero) in a
- * signed byte, or -128 and then itself in four bytes, little-endian.
+ * Rows of `width` integers from bytes. A signed byte holds the difference to the row before (for the first row: to
+ * zero). A byte of -128 means that the integer itself follows in four bytes, little-endian.
  */
 export function differences(packed, width, rows) {
   const view = new DataView(packed.buffer, packed.byteOffset, packed.byteLength);
@@ -42,7 +42,7 @@ export function differences(packed, width, rows) {
 /** Signed bytes from base64. */
 export const signedBytes = (base64) => new Int8Array(bytes(base64 ?? '').buffer);
 
-/** The square matrix of coefficients, from the bytes of its lower triangle, row by row. */
+/** The symmetric matrix whose lower triangle is given row by row. */
 export function unpackTriangle(values, size) {
   const matrix = Array.from({length: size}, () => new Float32Array(size));
   let k = 0;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the observations of a calibration without a tracker come to.
+// Summary of the observations in a calibration without a tracker.
 import {fixed, significant} from './format.js';
 
 export const judged = (contact) => contact.kfold ?? contact.fit;
 export const thing = (contact) => contact.touches > 0 ? 'touches' : 'observations';
 export const where = (contact) => contact.kfold ? `on ${thing(contact)} that were left out` : `on the ${thing(contact)} of the fit`;
 
-/** What the errors are before and after, in a clause: of touches, or of the instrument that gained most. */
+/** A clause with the errors before and after: of touches, or of the instrument that gained most. */
 function errorClause(contact) {
   const after = judged(contact);
   const before = after.uncalibrated;
@@ -19,7 +19,7 @@ function errorClause(contact) {
   return `What ${best.name} shows (${best.what}) went from ${significant(best.before)} to ${significant(best.after)}\u00a0${best.unit}, ${where(contact)}`;
 }
 
-/** {state, word, sentence}: what the observations say of the calibration. */
+/** {state, word, sentence}: the verdict on the calibration by its observations. */
 export function contactVerdict(summary) {
   const {contact} = summary;
   const errors = errorClause(contact);
@@ -41,7 +41,7 @@ export function instrumentErrors(contact) {
   }));
 }
 
-/** Ranges of touches that follow each other in every second session, for the bands behind a plot. */
+/** Ranges of consecutive touches of every second session, for the bands behind a plot. */
 export function sessionBands(touches) {
   const runs = [];
   touches.forEach((touch, i) => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** One cell; text that a spreadsheet would take for a formula is kept text. */
+/** One cell. Text that a spreadsheet would take for a formula stays text. */
 function cell(value) {
   if (value === undefined || value === null || Number.isNaN(value)) return '';
   if (typeof value === 'number') return String(value);
@@ -7,18 +7,18 @@ function cell(value) {
   return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 }
 
-/** A table as CSV: names of the columns, then rows of numbers and texts. */
+/** A table as CSV, from names of columns and rows of numbers and texts. */
 export function toCsv(columns, rows) {
   return [columns, ...rows].map((row) => Array.from(row, cell).join(',') + '\n').join('');
 }
 
-/** Columns of numbers side by side, as plots have them. */
+/** A table as CSV, from columns of numbers as in plots. */
 export function columnsToCsv(names, columns) {
   const rows = Array.from({length: columns[0]?.length ?? 0}, (_, i) => columns.map((c) => c[i]));
   return toCsv(names, rows);
 }
 
-/** Hands a text to the browser as a file. */
+/** Lets the browser save a text as a file. */
 export function saveText(name, text) {
   const url = URL.createObjectURL(new Blob([text], {type: 'text/csv'}));
   const link = document.createElement('a');

@@ -5,7 +5,7 @@ const median = (values) => {
   return sorted.length % 2 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
 };
 
-/** Of one chain: numbers of postures, and by algorithm the median of O1 over the seeds there. */
+/** For one chain: numbers of postures, and for each algorithm the median of O1 over the seeds. */
 export function medianCurves(columns, chain) {
   const cells = new Map();
   columns.algorithm.forEach((algorithm, i) => {
@@ -21,7 +21,7 @@ export function medianCurves(columns, chain) {
   return {postures, curves};
 }
 
-/** Chains of what design summarises: an array, or an object by name, under `chains` or at the top. */
+/** Chains in the summary of `design`: an array, or an object by name, under `chains` or at the top level. */
 export function chainRows(summary) {
   const chains = summary?.chains ?? summary ?? {};
   const rows = Array.isArray(chains) ? chains

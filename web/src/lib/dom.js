@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /**
- * Makes an element. Texts become text nodes: nothing that comes from a user's file is ever read as
- * HTML. `attributes`: `class`, `onclick`-like listeners, booleans, `style` as an object of CSS
- * properties, anything else as it stands.
+ * Makes an element. Texts become text nodes, so that no content of a user's file is read as HTML.
+ * `attributes`: `class`, `onclick`-like listeners, booleans, `style` as an object of CSS properties;
+ * others are set as they are.
  */
 export function h(tag, attributes = {}, ...children) {
   const svg = tag === 'svg' || SVG_TAGS.has(tag);
@@ -35,7 +35,7 @@ function append(element, children) {
   }
 }
 
-/** The value of a CSS variable as the page has it now: light, dark or on paper. */
+/** The current value of a CSS variable, which differs between light, dark and paper. */
 export function cssColour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }

@@ -3,8 +3,8 @@ import {saveText} from './csv.js';
 import {h} from './dom.js';
 
 /**
- * A figure with its title, what it shows, and its data as CSV.
- * `data`: {name: file name, text: () => CSV}; made only when it is asked for.
+ * A figure with a title, a note and its data as CSV.
+ * `data`: {name: file name, text: () => CSV}. The CSV is made only on request.
  */
 export function figure({title, note, body, data, controls}) {
   const download = data && h('button', {
@@ -15,13 +15,13 @@ export function figure({title, note, body, data, controls}) {
            body, note && h('figcaption', {}, note));
 }
 
-/** A part of the page with its heading, `short` for the contents, and a sentence that says what it is. */
+/** A section of the page with its heading, a short title for the contents, and a leading sentence. */
 export function section(id, short, title, lead, ...children) {
   return h('section', {id, 'data-short': short, 'aria-labelledby': `${id}-title`},
            h('h2', {id: `${id}-title`}, title), lead && h('p', {class: 'lead'}, lead), ...children);
 }
 
-/** Buttons of which one is chosen; `choose(value)` is called on a change. */
+/** Buttons of which one is active. A change calls `choose(value)`. */
 export function choice(label, options, chosen, choose) {
   const name = `choice-${++choice.count}`;
   return h('fieldset', {class: 'choice'}, h('legend', {class: 'sr-only'}, label),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page of a fleet says of its robots, from the sessions and findings of a batch.
+// Statements on the robots of a fleet, from the sessions and findings of a batch.
 
 const DEPLOYABLE = 0;  // exit codes of calibrate
 const REFUSED = 4;
@@ -9,16 +9,16 @@ export const verdictText = (verdict) => VERDICTS[verdict];
 
 const verdictOf = ({exit_code: code}) => code === DEPLOYABLE ? 'fine' : code === REFUSED ? 'refused' : 'failed';
 
-/** Sessions in the order of time; those without a day as they stand. */
+/** Sessions in the order of time. Those without a day keep their order. */
 const inTime = (sessions) => sessions.map((session, i) => ({session, i}))
   .sort((a, b) => ((a.session.day ?? -Infinity) - (b.session.day ?? -Infinity) || a.i - b.i)).map(({session}) => session);
 
-/** How much a robot needs to be looked at: those at the top first. */
+/** How urgently a robot needs attention; the largest number comes first. */
 const urgency = (robot) => (robot.verdict === 'failed' ? 4 : 0) + (robot.verdict === 'refused' ? 3 : 0) + (robot.workshop ? 2 : 0) + (robot.drifts.length > 0 ? 1 : 0);
 
 /**
- * A row a robot, by its last session: verdict, figures, joints out of family, parameters that drift, whether it needs a
- * workshop. Those that need a look first, then the largest error of the calibrated URDF.
+ * A row for each robot, by its last session: verdict, figures, joints out of family, drifting parameters, and whether it
+ * needs a workshop. Robots that need attention come first, then those with the largest error of the calibrated URDF.
  */
 export function robotRows({sessions = [], fleet = {}}) {
   const byRobot = new Map();
@@ -38,7 +38,7 @@ export function robotRows({sessions = [], fleet = {}}) {
   return rows.sort((a, b) => urgency(b) - urgency(a) || (b.urdf ?? -1) - (a.urdf ?? -1));
 }
 
-/** The batches of the maker: how many robots, how many to be deployed, half of their URDFs err by less than. */
+/** The maker's batches: number of robots, number to be deployed, and median error of their URDFs. */
 export function batchRows(robots) {
   const byBatch = new Map();
   for (const robot of robots) {
@@ -53,7 +53,7 @@ export function batchRows(robots) {
   })).sort((a, b) => a.batch < b.batch ? -1 : 1);
 }
 
-/** The fleet in one sentence, with the state that colours it. */
+/** The verdict on the fleet: the state that colours it, and numbers of robots. */
 export function fleetVerdict(robots) {
   const number = (verdict) => robots.filter((robot) => robot.verdict === verdict).length;
   const [fine, refused, failed] = [number('fine'), number('refused'), number('failed')];

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Numbers as a person reads them; '–' where there is none. */
+/** A number for people to read, or '–' if there is none. */
 export function fixed(value, digits = 2) {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
   const text = value.toFixed(digits);
   return (Number(text) === 0 ? text.replace('-', '') : text).replace('-', '−');
 }
 
-/** The power of ten of a number's first digit, once it is rounded to so many digits: 0.0996 to two has −1. */
+/** The power of ten of the first digit after rounding to so many digits: −1 for 0.0996 with two digits. */
 const power = (value, digits) => Number(value.toExponential(digits - 1).split('e')[1]);
 
 const SUPERSCRIPTS = {'-': '⁻', 0: '⁰', 1: '¹', 2: '²', 3: '³', 4: '⁴', 5: '⁵', 6: '⁶', 7: '⁷', 8: '⁸', 9: '⁹'};
@@ -17,7 +17,7 @@ function exponential(value, digits) {
   return `${mantissa.replace('-', '−')}·10${[...exponent].map((c) => SUPERSCRIPTS[c]).join('')}`;
 }
 
-/** Three significant digits, whatever the size. */
+/** A number of any size with three significant digits. */
 export function significant(value, digits = 3) {
   if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
   if (value === 0) return '0';
@@ -26,19 +26,19 @@ export function significant(value, digits = 3) {
   return rounded(value, digits - 1 - power(value, digits));
 }
 
-/** To so many decimals; a negative number of them rounds to tens, hundreds and so on. */
+/** Rounds to so many decimals. A negative number of decimals rounds to tens, hundreds and so on. */
 function rounded(value, decimals) {
   if (decimals > 0) return fixed(value, decimals);
   const step = 10 ** -decimals;
   return count(step * Math.round(value / step));
 }
 
-const MOST_DECIMALS = 8;  // a smaller standard deviation is written with a power of ten
+const MOST_DECIMALS = 8;  // smaller standard deviations have a power of ten
 
 /**
- * An estimate with its standard deviation as texts {value, sd}: the standard deviation has two
- * significant digits, the estimate the same decimals. Without a standard deviation (zero, infinite
- * or none) the estimate has `decimals`.
+ * An estimate and its standard deviation as texts {value, sd}. The standard deviation has two
+ * significant digits, and the estimate has the same decimals. Without a standard deviation (zero,
+ * infinite or none), the estimate has `decimals`.
  */
 export function withSd(value, sd, decimals = 2) {
   const known = typeof sd === 'number' && Number.isFinite(sd) && sd > 0;
@@ -48,20 +48,20 @@ export function withSd(value, sd, decimals = 2) {
   return {value: Number.isFinite(value) ? rounded(value, same) : '–', sd: rounded(Number(sd.toPrecision(2)), same)};
 }
 
-/** 'low to high': both with the decimals of two significant digits of half their distance; '∞' for no end. */
+/** 'low to high' with as many decimals as two significant digits of half their distance need; '∞' for no end. */
 export function interval(low, high) {
   const half = (high - low) / 2;
   const end = (x) => !Number.isFinite(x) ? (x < 0 ? '−∞' : '∞') : Number.isFinite(half) && half > 0 ? withSd(x, half).value : significant(x);
   return `${end(low)} to ${end(high)}`;
 }
 
-/** A probability that a test gives: nobody needs the digits of a very small one. */
+/** The probability of a test. The digits of very small ones are not shown. */
 export function probability(p) {
   if (typeof p !== 'number' || !Number.isFinite(p)) return '–';
   return p < 1e-4 ? '< 0.0001' : significant(p, 2);
 }
 
-/** A whole number's digits with a true minus, and narrow spaces between thousands. */
+/** The digits of a whole number with a minus sign, and narrow spaces between thousands. */
 const grouped = (digits) => digits.replace('-', '−').replace(/\B(?=(\d{3})+(?!\d))/g, '\u202f');
 
 /** 12 345, with narrow spaces. */
@@ -70,7 +70,7 @@ export function count(value) {
   return grouped(String(Math.round(value))).replace(/^−0$/, '0');
 }
 
-/** A mark of an axis: as many decimals as it has; nothing where the axis has no text. */
+/** The label of a tick with all its decimals, or none if the axis has no text there. */
 export function tick(value) {
   if (value === null || value === undefined) return '';
   const [whole, decimals] = String(Number(value.toPrecision(9))).split('.');
@@ -82,14 +82,14 @@ export function plural(number, one, many = one + 's') {
   return `${count(number)} ${number === 1 ? one : many}`;
 }
 
-/** 'a', 'a and b', 'a, b and c'; beyond `most` the rest is counted. */
+/** 'a', 'a and b', 'a, b and c'. Items beyond `most` are counted. */
 export function list(items, most = 6) {
   const shown = items.length > most ? [...items.slice(0, most), `${items.length - most} more`] : items;
   if (shown.length < 2) return shown.join('');
   return `${shown.slice(0, -1).join(', ')} and ${shown.at(-1)}`;
 }
 
-/** How units stand on the page. */
+/** Units as the page shows them. */
 export function prettyUnit(unit) {
   return unit.replace('N.m', 'N·m').replace(/^deg$/, '°').replace(/^u(?=rad|m)/, 'µ');
 }
@@ -113,10 +113,10 @@ const KIND_NAMES = {
 };
 export const kindName = (kind) => KIND_NAMES[kind] ?? kind;
 
-/** Suffix of a key, what its numbers are multiplied by, and the unit to show. */
+/** Suffix of a key, factor for its numbers, and unit to show. */
 const SUFFIXES = [['_mm', 1, 'mm'], ['_m', 1e3, 'mm'], ['_share', 100, '%'], ['_deg', 1, '°'], ['_s', 1, 's']];
 
-/** Numbers and texts of a nested object for a table: [name, value, unit]; lists are passed over. */
+/** Numbers and texts of a nested object for a table: [name, value, unit]. Lists are skipped. */
 export function flatten(object, path = []) {
   return Object.entries(object ?? {}).flatMap(([key, value]) => {
     const [suffix, factor, unit] = SUFFIXES.find(([end]) => key.endsWith(end)) ?? ['', 1, ''];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts of warnings that say the same of several joints, markers, trials or times become one.
+// Warnings that say the same about several joints, markers, trials or times become one.
 import {list} from './format.js';
 
 const escaped = (name) => name.replace(/[.*+?^${}()|[\]\\]/g, '\\$&');
@@ -7,7 +7,7 @@ const NUMBER = '(?<![\\w.])[-−+]?\\d+(?:\\.\\d+)?(?:e[-+]?\\d+)?(?![\\w])';
 const IDENTIFIER = '[\\w+-]*(?:\\w_\\w|[A-Za-z]\\d)[\\w+-]*(?:\\.\\w+)*';
 const QUOTED = '"[^"]*"';
 
-/** Finds names, known ones first and the longest of these first, and what looks like a name; then numbers. */
+/** A pattern for known names (longest first), for words that look like names, and for numbers. */
 function slotPattern(known) {
   const names = [...new Set(known)].filter((name) => name.length > 1).sort((a, b) => b.length - a.length)
     .map((name) => `(?<![\\w])${escaped(name)}(?![\\w])`);
@@ -15,7 +15,7 @@ function slotPattern(known) {
   return new RegExp(`(?<names>(?:${name})(?:, (?:${name}))*)|(?<number>${NUMBER})`, 'g');
 }
 
-/** A text without its names and numbers, and the names that it had. */
+/** A text without its names and numbers, and these names. */
 function skeleton(text, pattern) {
   const names = [];
   const frame = text.replace(pattern, (found, ...rest) => {
@@ -26,14 +26,14 @@ function skeleton(text, pattern) {
   return {frame, names};
 }
 
-/** Of several lists of names the places where they are not all the same. */
+/** Places at which several lists of names differ. */
 const differing = (all) => all[0].map((_, k) => k).filter((k) => all.some((names) => names[k] !== all[0][k]));
 
 /**
- * Texts that differ only in names and numbers, together, in the order of their first:
- * [{text, names, all}]. `text` is the first one, `names` says of whom or what each of the others
- * speaks (empty where only numbers differ), `all` has the whole texts. `known`: names of joints,
- * markers, trials and clusters; what looks like a name (arm_1, LF2, "x y") is one without that.
+ * Groups texts that differ only in names and numbers, in the order of their first: [{text, names, all}].
+ * `text` is the first one, `names` are the subjects of the others (empty if only numbers differ), and
+ * `all` has the whole texts. `known`: names of joints, markers, trials and clusters. Words that look
+ * like names (arm_1, LF2, "x y") need not be known.
  */
 export function groupTexts(texts, known = []) {
   const pattern = slotPattern(known);
@@ -41,7 +41,7 @@ export function groupTexts(texts, known = []) {
   for (const text of texts) {
     const {frame, names} = skeleton(text, pattern);
     if (!groups.has(frame)) groups.set(frame, new Map());
-    groups.get(frame).set(text, names);  // what is said twice word by word is said once
+    groups.get(frame).set(text, names);  // identical texts are kept once
   }
   return [...groups.values()].map((group) => {
     const all = [...group.keys()];
@@ -61,7 +61,7 @@ export function othersOf(group) {
   return `The same was found ${more === 1 ? 'once' : `${more} times`} more.`;
 }
 
-/** Every name that a summary knows: joints, markers, clusters, trials. */
+/** All names in a summary: joints, markers, clusters, trials. */
 export function knownNames(report) {
   const {summary = {}, data = {}} = report;
   const owners = (summary.parameters ?? []).map(({name}) => name.startsWith('marker.') ? name.split('.')[1] : name.slice(0, name.lastIndexOf('.')));
@@ -69,17 +69,17 @@ export function knownNames(report) {
   return [...owners, ...named].filter(Boolean);
 }
 
-/** A text as a sentence: with a capital where it begins with a word of the language, and an end. */
+/** A text as a sentence: with a full stop, and with a capital unless it begins with a name. */
 export function sentence(text, known = []) {
   const [first] = text.match(/^[a-z]+(?=[ ,:])/) ?? [''];
   const begun = first && !known.includes(first) ? text[0].toUpperCase() + text.slice(1) : text;
   return typeset(/[.?!]$/.test(begun) ? begun : `${begun}.`);
 }
 
-/** The program's '+-' and '-7.1' as they are printed: '±' and '−7.1'. */
+/** Replaces the program's '+-' and '-7.1' by '±' and '−7.1'. */
 export const typeset = (text) => text.replaceAll('+-', '±').replace(/(^|[\s(])-(?=\d)/g, '$1−');
 
-/** {objections, remarks, warnings}, each text once: the warnings also have the remarks and the trials' findings. */
+/** {objections, remarks, warnings} with each text once. (In a summary, warnings repeat remarks and findings.) */
 export function spoken(summary) {
   const objections = summary.objections ?? [];
   const remarks = (summary.remarks ?? []).filter((text) => !objections.includes(text));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {h} from './dom.js';
 
-/** Colours with their meaning. `items`: [{text, colour, shape: 'line' | 'dot'}]. */
+/** Explains colours. `items`: [{text, colour, shape: 'line' | 'dot'}]. */
 export function legend(items) {
   return h('ul', {class: 'legend'}, ...items.map(({text, colour, shape, dashed}) => h('li', {},
     h('span', {class: `key ${shape ?? 'line'}${dashed ? ' dashed' : ''}`,

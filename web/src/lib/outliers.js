@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** {trial, posture} of an outlier; the summary counts the postures of all trials. A table has no trials, but lines. */
+/** {trial, posture} of an outlier, whose number in the summary counts all trials. A table has lines, not trials. */
 export function placeOf(outlier, report) {
   if (outlier.line) return {trial: '', posture: `${outlier.posture + 1} (line ${outlier.line})`};
   let first = 0;
@@ -11,8 +11,8 @@ export function placeOf(outlier, report) {
 }
 
 /**
- * Outliers of one marker in one trial as one row, and markers that are outliers in the same postures
- * as one: [{trial, markers, postures, count, residual_mm, normalised}], the largest residual first.
+ * One row for all outliers of a marker in a trial, and for markers that are outliers in the same
+ * postures: [{trial, markers, postures, count, residual_mm, normalised}], largest residual first.
  * `place`: {trial, posture} of an outlier.
  */
 export function outlierRows(outliers, place) {

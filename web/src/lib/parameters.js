@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {userUnit} from './units.js';
 
-/** 'arm_left_1_joint' and 'theta' of 'arm_left_1_joint.theta'; the kind is behind the last dot. */
+/** 'arm_left_1_joint' and 'theta' for 'arm_left_1_joint.theta'. The kind follows the last dot. */
 export function splitName(name) {
   const dot = name.lastIndexOf('.');
   return {owner: name.slice(0, dot), kind: name.slice(dot + 1)};
@@ -10,10 +10,10 @@ export function splitName(name) {
 const MARKER = /^marker\./;
 const WAIST = /^waist\.T0\./;
 
-/** Of the recording, not of the robot. */
+/** Whether a parameter belongs to the recording and not to the robot. */
 export const isExternal = (name) => MARKER.test(name) || WAIST.test(name);
 
-/** The first of `pairs`, which come with the strongest first; those of waist and markers only on request. */
+/** The first of `pairs`, which are sorted by strength. Pairs of waist and markers are optional. */
 export function strongestPairs(pairs, withExternal, most = 8) {
   return pairs.filter((p) => withExternal || !(isExternal(p.first) || isExternal(p.second))).slice(0, most);
 }
@@ -26,7 +26,7 @@ export function family(parameter, legs) {
   return legs.includes(owner) && kind.startsWith('compliance') ? 'leg' : 'joint';
 }
 
-/** The order in which Table 1 has its columns, with the signs of the paper. */
+/** The columns of Table 1 in order, with the symbols of the paper. */
 export const KINDS = [
   {kind: 'theta', symbol: 'θ', what: 'rotation about the joint axis (joint offset)'},
   {kind: 'r', symbol: 'r', what: 'translation along the joint axis'},
@@ -65,7 +65,7 @@ export function byJoint(parameters, legs) {
   return joints;
 }
 
-/** The kinds that any of the joints has, in the order of the table. */
+/** The kinds of parameters that any of the joints has, in the order of the table. */
 export function kindsOf(joints) {
   const present = new Set([...joints.values()].flatMap((kinds) => [...kinds.keys()]));
   return KINDS.filter(({kind}) => present.has(kind));
@@ -78,7 +78,7 @@ export const STATUS_WORDS = {
   not_in_model: 'not in this model',
 };
 
-/** How many parameters have each status, markers and waist aside. */
+/** Number of parameters with each status, without markers and waist. */
 export function countByStatus(parameters, legs) {
   const counts = {};
   for (const parameter of parameters) {
@@ -88,7 +88,7 @@ export function countByStatus(parameters, legs) {
   return counts;
 }
 
-/** Joint offsets that any of the calibrations estimated: [{joint, unit, of: [{value, sd} | null]}]. */
+/** Joint offsets that at least one calibration estimated: [{joint, unit, of: [{value, sd} | null]}]. */
 export function offsetsOverTime(calibrations) {
   const names = new Set(calibrations.flatMap((c) => c.parameters.filter((p) => /\.theta$/.test(p.name) && !/^waist\./.test(p.name) && p.status === 'estimated').map((p) => p.name)));
   return [...names].map((name) => {

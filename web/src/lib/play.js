@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/** Starts or stops what has a button `play` and a `tick(time)` for each frame while `playing`. */
+/** Starts or stops a player, which has a button `play` and a `tick(time)` for each frame while `playing`. */
 export function setPlaying(player, playing) {
   if (playing === Boolean(player.playing)) return;
   player.playing = playing;

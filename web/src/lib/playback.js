@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import {differences, floats, inflated} from './binary.js';
 
-const MOST_MOVED = 0.35;  // m or rad: further than that nothing is exaggerated
+const MOST_MOVED = 0.35;  // m or rad: larger displacements are not exaggerated
 
-/** Picture at or before a time; the last one after the end. */
+/** Number of the picture at a time or the last before it. */
 export function pictureAt(times, time) {
   let low = 0;
   let high = times.length - 1;
@@ -14,7 +14,7 @@ export function pictureAt(times, time) {
   return low;
 }
 
-/** One executed robot: pictures of displacements from the plan, as the program packed them. */
+/** A robot that executed the plan: pictures of its displacements from the plan, as the program packed them. */
 class PlayedRobot {
   constructor(packed, links, values, unitM, unitRad) {
     Object.assign(this, {as: packed.as, stabilised: packed.stabilised, pictures: packed.pictures, tips: packed.tips ?? []});
@@ -23,7 +23,7 @@ class PlayedRobot {
     this.units = [unitM, unitM, unitM, unitRad, unitRad, unitRad];
   }
 
-  /** Its last picture at i or before: a robot that fell stays where it lay. */
+  /** Its last picture up to i. A robot that fell stays where it lay. */
   last(i) {
     return Math.min(i, this.pictures - 1);
   }
@@ -34,7 +34,7 @@ class PlayedRobot {
     return this.units.map((unit, k) => unit * this.values[from + k]);
   }
 
-  /** The factor asked for, or the largest that keeps the exaggerated robot in one piece. */
+  /** The wanted factor, or the largest that keeps the exaggerated robot in one piece. */
   factor(i, wanted) {
     let largest = 0;
     const from = this.width * this.last(i);
@@ -42,17 +42,17 @@ class PlayedRobot {
     return Math.max(1, Math.min(wanted, largest > 0 ? MOST_MOVED / largest : wanted));
   }
 
-  /** Largest distance from the plan, mm, of the places of a kind in picture i; null where all stand. */
+  /** Largest distance from the plan, mm, over all places of a kind in picture i; null if all of them stand. */
   distance(i, place) {
     const known = this.tips.filter((tip) => tip.place === place).map((tip) => tip.distance_mm[this.last(i)]).filter((mm) => typeof mm === 'number');
     return known.length > 0 ? Math.max(...known) : null;
   }
 }
 
-/** Robots of a playback that have pictures; none where nothing was recorded. */
+/** Robots of a playback that have pictures; none if nothing was recorded. */
 export const playedRobots = (playback) => playback?.time_s?.length > 0 ? (playback.robots ?? []).filter((robot) => robot.pictures > 0) : [];
 
-/** `deployment.playback` made ready: the plan's pictures, and those of each robot. */
+/** Decodes `deployment.playback`: the pictures of the plan, and those of each robot. */
 export async function readPlayback(playback) {
   const {time_s: times, joints, links} = playback;
   const root = floats(playback.root);
@@ -67,7 +67,7 @@ export async function readPlayback(playback) {
   };
 }
 
-/** Distances of all robots as rows: as, time, then the tips in order. */
+/** Distances of all robots as rows: `as`, time, and the tips in order. */
 export function distanceRows(playback) {
   const times = playback.time_s;
   return playedRobots(playback).flatMap((robot) => Array.from({length: robot.pictures}, (_, i) => [robot.as, times[i], ...robot.tips.map((tip) => tip.distance_mm[i])]));

@@ -8,7 +8,7 @@ import {legend} from './legend.js';
 import {onTheme} from './theme.js';
 
 const FONT = '12px system-ui, sans-serif';
-const WHOLE = [0, 1, 2, 3].flatMap((digits) => [1, 2, 5].map((step) => step * 10 ** digits));  // steps of an axis that counts
+const WHOLE = [0, 1, 2, 3].flatMap((digits) => [1, 2, 5].map((step) => step * 10 ** digits));  // ticks for whole numbers
 
 function axis(label, extra = {}) {
   const colour = cssColour('--muted');
@@ -19,7 +19,7 @@ function axis(label, extra = {}) {
   };
 }
 
-/** What uPlot draws of one series of ours. */
+/** Options of uPlot for one of our series. */
 function seriesOptions(series) {
   const dots = series.dots ?? false;
   return {
@@ -34,7 +34,7 @@ function seriesOptions(series) {
   };
 }
 
-/** Bands behind the lines, as `[from, to]` on the x axis. */
+/** Draws bands behind the lines, given as `[from, to]` on the x axis. */
 function bandsPlugin(bands) {
   return {hooks: {drawClear: (u) => {
     u.ctx.save();
@@ -48,7 +48,7 @@ function bandsPlugin(bands) {
   }}};
 }
 
-/** The numbers under the cursor, in a line whose place is always there. */
+/** Shows the numbers under the cursor in a line that always has its place. */
 function readout(element, options) {
   return (u) => {
     const {idx} = u.cursor;
@@ -65,7 +65,7 @@ function readout(element, options) {
   };
 }
 
-/** Left and right move the cursor, Home and End to the ends, Escape takes the zoom back. */
+/** Left and right move the cursor, Home and End move it to the ends, Escape resets the zoom. */
 function onKey(event, u, reset) {
   const last = u.data[0].length - 1;
   const now = u.cursor.idx ?? (event.key === 'ArrowLeft' ? last + 1 : -1);
@@ -82,12 +82,12 @@ function onKey(event, u, reset) {
 /**
  * A plot of columns against a common x. `options`: {x: {label, short, log, whole}, y: {label, min, log},
  * series: [{text, colour, dots, dashed, steps}], data: [x, y1, ...], bands, height, label}.
- * It keeps its height from the beginning, follows the width of the page, and draws itself anew in
- * the colours of the theme.
+ * It has its height from the beginning, follows the width of the page, and is redrawn in the colours of
+ * a new theme.
  */
 export function plot(options) {
   const {height = 260, series, data} = options;
-  // Said once; the line keeps its place under every plot.
+  // The hint appears once, but every plot has room for its line.
   const settings = {...options, hint: plot.explained ? '\u00a0' : 'Point at a plot, or focus it and use the arrow keys, to read values; drag to zoom, double-click to go back.'};
   plot.explained = true;
   const values = h('p', {class: 'readout'}, settings.hint);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {h} from './dom.js';
 
-/** A slider with its label and the place for its value: {output, slider, row}. */
+/** A slider with its label and its value: {output, slider, row}. */
 export function range(label, attributes, input) {
   const output = h('output', {});
   const slider = h('input', {type: 'range', 'aria-label': label, ...attributes, oninput: (e) => input(Number(e.target.value))});

@@ -2,9 +2,8 @@
 import {h} from './dom.js';
 
 /**
- * A table that scrolls inside itself where it is wider than the page. `columns`: [{text, unit,
- * number}]; `rows`: arrays of texts or nodes; the first cell heads its row. A row may be
- * {cells, class}.
+ * A table that scrolls if it is wider than the page. `columns`: [{text, unit, number}]. `rows`: arrays
+ * of texts or nodes, of which the first is the heading of its row. A row may be {cells, class}.
  */
 export function table({caption, columns, rows, className = ''}) {
   const head = columns.map((column) => h('th', {scope: 'col', class: column.number ? 'number' : ''},

@@ -4,7 +4,7 @@ import {kindName} from './format.js';
 const CASES = {SW: 'sine', RP: 'random', RM: 'repeatability'};
 const readable = (chain) => chain.replaceAll('+', ' + ').replaceAll('_', ' ');
 
-/** Rows of Table 2: by chain and motion, then the chains as a whole and the mean. */
+/** Rows of Table 2: chains and motions, then whole chains, then the mean. */
 export function table2Rows(errors, models) {
   const values = (row, figure) => models.map((model) => row[figure]?.[model]);
   const row = (chain, motion, item) => ({chain, motion, rmse: values(item, 'rmse_3d_mm'), max: values(item, 'max_mm')});
@@ -17,7 +17,7 @@ export function table2Rows(errors, models) {
   return rows;
 }
 
-/** Recordings without trials for validation: in sample, and held-out folds. */
+/** Rows for recordings without trials for validation: in sample, and in held-out folds. */
 export function inSampleRows(summary, models) {
   const row = (chain, motion, item) => ({chain, motion, rmse: models.map((m) => item.rmse_3d_mm?.[m]), max: models.map((m) => item.max_mm?.[m])});
   const rows = [row('All chains', 'those of the fit', summary)];

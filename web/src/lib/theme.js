@@ -4,7 +4,7 @@ const darkWanted = matchMedia('(prefers-color-scheme: dark)');
 const paper = matchMedia('print');
 let printing = false;
 
-/** Called whenever the colours of the page have changed. */
+/** Calls `listener` whenever the colours of the page change. */
 export function onTheme(listener) {
   listeners.add(listener);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 const DEGREE = Math.PI / 180;
 
-/** By the SI unit of summary.json: the unit that people use, and how much of it one SI unit is. */
+/** For each SI unit of summary.json: the unit that people use, and how many of it are one SI unit. */
 const USER = {
   'rad': {unit: '°', factor: 1 / DEGREE, digits: 3},
   'm': {unit: 'mm', factor: 1e3, digits: 2},
@@ -17,8 +17,8 @@ const USER = {
 export const userUnit = (si) => USER[si] ?? {unit: si, factor: 1, digits: 4};
 
 /**
- * The stiffness that a compliance is the inverse of, with its unit and, to first order, its standard
- * deviation; null for other parameters.
+ * The inverse of a compliance, which is a stiffness, with its unit and its standard deviation to first
+ * order; null for other parameters.
  */
 export function stiffness(parameter) {
   if (!(parameter.value > 0)) return null;
@@ -28,7 +28,7 @@ export function stiffness(parameter) {
   return {value, sd: typeof parameter.sd === 'number' ? value * parameter.sd / parameter.value : null, unit: inverse.unit};
 }
 
-/** Ends of the stiffness's 95 % interval: inverses of the compliance's ends; Infinity for a rigid joint. */
+/** Ends of the stiffness's 95 % interval, the inverses of the compliance's ends; Infinity for a rigid joint. */
 export function stiffnessInterval(parameter) {
   return [1, -1].map((sign) => stiffness({...parameter, value: parameter.value + sign * 1.96 * parameter.sd})?.value ?? Infinity);
 }

@@ -14,7 +14,7 @@ const JUDGED_ON = {
   'the fit': 'on the calibration postures themselves',
 };
 
-/** What the verdict on the robot description (URDF) stands on: {before, after, compensated, on}, mm, the most independent of what there is. */
+/** The errors (mm) that decide on the robot description (URDF): {before, after, compensated, on}, from the most independent data. */
 export function judgedErrors(summary) {
   const urdf = summary.deployed?.urdf;
   if (typeof urdf?.rmse_3d_mm === 'number' && typeof urdf?.uncalibrated === 'number') {
@@ -37,7 +37,7 @@ export function judgedErrors(summary) {
   return null;
 }
 
-/** Errors by `validate` into the same folder, where the recording is another one and nothing is wrong with it. */
+/** Errors of a `validate` into the same folder, if its recording is another one and sound. */
 function onAnotherRecording(validation) {
   const figures = validation?.rmse_3d_mm;
   const after = figures?.urdf ?? figures?.calibrated;
@@ -48,7 +48,7 @@ function onAnotherRecording(validation) {
 
 const deployable = (summary) => summary.status === 'converged' && (summary.objections ?? []).length === 0;
 
-/** Joint and leg parameters that the recording could not determine, for the verdict's last words. */
+/** Joint and leg parameters that the recording could not determine, for the end of the verdict. */
 export function undetermined(summary) {
   const legs = (summary.legs ?? []).map((leg) => leg.name);
   return (summary.parameters ?? []).filter((parameter) => parameter.status === 'unsupported' &&
@@ -56,9 +56,9 @@ export function undetermined(summary) {
 }
 
 /**
- * The verdict as {state: 'deploy' | 'check' | 'reject', word, sentence, rest, errors}: the sentence says
- * from where to where the errors went and on what data, `rest` what the recording hardly tells.
- * `validation`: what `validate` wrote into the same folder, if it did.
+ * The verdict as {state: 'deploy' | 'check' | 'reject', word, sentence, rest, errors}. The sentence has the
+ * errors before and after, and their data. `rest` says what the recording hardly tells. `validation`: the
+ * result of `validate` in the same folder, if there is one.
  */
 export function verdict(summary, validation) {
   const own = judgedErrors(summary);

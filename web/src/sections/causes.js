@@ -10,10 +10,10 @@ import {plot} from '../lib/plot.js';
 
 const withUnit = (what, unit) => unit ? `${what} [${prettyUnit(unit)}]` : what;
 
-/** Two columns of dots are spread a little, so that they can be told apart; the same way each time. */
+/** Spreads two columns of dots a little, always in the same way, so that dots can be told apart. */
 const spread = (picture, i) => picture.against_unit === '' ? 0.16 * (((i * 0.618034) % 1) - 0.5) : 0;
 
-/** Points and curve on one ascending x, as plots want them. */
+/** Points and curve with a common ascending x, as plots need them. */
 export function pictureColumns(picture) {
   const dots = picture.x.map((x, i) => [x + spread(picture, i), picture.y[i], null]);
   const curve = picture.curve_x.map((x, i) => [x, null, picture.curve_y[i]]);
@@ -21,7 +21,8 @@ export function pictureColumns(picture) {
   return [0, 1, 2].map((k) => rows.map((row) => row[k]));
 }
 
-/** 'displacement of arm_6_joint' as 'displacement', 'rotation of the root link about x' as 'rotation about x': the title has the rest. */
+// 'displacement' for 'displacement of arm_6_joint', 'rotation about x' for 'rotation of the root link about x'. The title
+// names the rest.
 const shortly = (displaced) => displaced.replace(/ of .*?(?=( (along|about) [xyz])?$)/, '');
 
 const SERIES = [{text: 'a posture', colour: OKABE_ITO.sky, dots: 'only', dotSize: 4, shape: 'dot'},
@@ -38,7 +39,7 @@ function causePlot(picture) {
     h('p', {class: 'cause-words'}, typeset(`${picture.words}. p ${probability(picture.p_adjusted)}.`)));
 }
 
-/** What the causes look like that were taken, or come nearest to it; null where none was looked for. */
+/** Pictures of the causes that were taken, or of the nearest ones; null if none was searched for. */
 export function causesFigure(report) {
   const own = report.diagnosis?.pictures;
   const pictures = (Array.isArray(own) ? own : report.summary.diagnosis_pictures ?? []).filter((picture) => picture.x?.length > 0);

@@ -11,7 +11,7 @@ function fact(value, unit, what) {
   return h('div', {class: 'fact'}, h('dt', {}, what), h('dd', {}, value, unit && h('span', {class: 'unit'}, ` ${unit}`)));
 }
 
-/** The head of the page for a robot that touched tables or was measured by instruments. */
+/** The head of the page for a robot that touched tables or that instruments measured. */
 export function contactVerdictSection(report) {
   const {summary} = report;
   const result = contactVerdict(summary);
@@ -41,7 +41,7 @@ function errorRows(contact) {
 
 const COLUMNS = [{text: 'Robot'}, {text: 'Touches', number: true}, {text: 'Height', unit: 'mm', number: true}, {text: 'Tilt x', unit: 'deg', number: true}, {text: 'Tilt y', unit: 'deg', number: true}, {text: 'Largest height', unit: 'mm', number: true}];
 
-/** Touches of another day. */
+/** A figure of the touches of another day. */
 function validationFigure(validation) {
   if (!validation?.contact) return null;
   return figure({title: 'On another recording', note: `${validation.recording}; the table ${validation.contact.table === 'refitted' ? 'was registered anew on the other touches' : 'is where it was in the calibration'}.`,
@@ -54,7 +54,7 @@ function touchErrorsFigure(contact) {
     data: touches.length > 0 ? {name: 'touches.csv', text: () => toCsv(KEYS, touches.map((t) => [t.file, t.line, t.plate, t.session, t.height_mm, ...t.tilt_deg]))} : undefined});
 }
 
-/** Errors of what was touched and measured, and where tables, mountings and sessions were found. */
+/** Errors of touches and measurements, and the estimated tables, mountings and sessions. */
 export function contactSection(report) {
   const {contact} = report.summary;
   const touched = contact.touches > 0;

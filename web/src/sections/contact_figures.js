@@ -16,7 +16,7 @@ function estimate(value, sd, digits = 2) {
 const estimates = (values, sds) => values.map((value, i) => estimate(value, sds?.[i]));
 const tilts = (of) => ['x', 'y'].map((axis) => ({text: `${of} ${axis}`.trim(), unit: 'deg', number: true}));
 
-/** The name of a file without its folders, which only make a table wide; other names stay. */
+/** The name of a file without its folders, to keep tables narrow. Other names are unchanged. */
 const short = (session) => session.replace(/^.*\/(?=[^/]*\.\w+)/, '');
 
 /** Height and tilt of each touch, in the order of the recording. */
@@ -39,7 +39,7 @@ export function touchPlots(contact) {
 
 const ROW_NAMES = {position: 'position', rotation: 'rotation', acceleration: 'acceleration', height: 'height', length: 'length', pixel: 'image point'};
 
-/** Errors by instrument, as `instrumentErrors` has them. */
+/** A figure of `instrumentErrors`. */
 export function instrumentErrorsFigure(errors) {
   if (errors.length === 0) return null;
   return figure({title: 'Errors by instrument', note: 'Root mean square of one coordinate.',
@@ -58,13 +58,13 @@ export function platesFigure(contact) {
 
 const SHOWN = {m: [1e3, 'mm'], rad: [180 / Math.PI, 'deg']};
 
-/** One number of a quantity in the unit that people use. */
+/** A number of a quantity in the unit that people use. */
 function shownNumber(value, sd, unit) {
   const [factor, name] = SHOWN[unit] ?? [1, unit];
   return [estimate(factor * value, typeof sd === 'number' ? factor * sd : null, 4), name];
 }
 
-/** Mountings and surroundings, number by number. */
+/** A table of the numbers of mountings and surroundings. */
 export function quantitiesFigure(contact) {
   const quantities = (contact.quantities ?? []).filter((q) => q.units?.length === q.values.length);
   if (quantities.length === 0) return null;
@@ -74,7 +74,7 @@ export function quantitiesFigure(contact) {
     data: {name: 'quantities.csv', text: () => toCsv(['quantity', 'number', 'value', 'sd', 'unit'], quantities.flatMap((q) => q.values.map((value, k) => [q.name, k + 1, value, q.sds[k], q.units[k]])))}});
 }
 
-/** How far tables, trackers and so on lie elsewhere in each session. */
+/** Displacements of tables, trackers and so on in each session. */
 export function sessionsFigure(contact) {
   const effects = contact.session_effects ?? [];
   if (effects.length < 2) return null;

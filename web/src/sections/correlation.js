@@ -32,7 +32,7 @@ function pairItem(p) {
   return h('li', {}, h('span', {}, `${p.first} and ${p.second}`), h('strong', {}, fixed(p.coefficient, Math.abs(p.coefficient) > 0.99 ? 4 : 2)));
 }
 
-/** The map of correlations between estimates; moving on it, by pointer or arrow keys, names pairs. */
+/** The map of correlations between estimates. The pointer or the arrow keys select a pair, which is named. */
 export function correlationFigure(correlation, pairs) {
   if (!correlation?.names?.length) return null;
   const {names} = correlation;

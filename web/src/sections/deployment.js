@@ -10,7 +10,7 @@ const KNOWS = {nominal: 'the nominal URDF', urdf: 'the calibrated URDF', compens
 
 const place = (error) => error?.samples ? `${fixed(error.rms_mm)} (${fixed(error.max_mm)})` : '';
 
-/** How the robot executed a motion, by what its controller knew of it (`simulate --deploy`). */
+/** Execution of a motion by controllers with different knowledge of the robot (`simulate --deploy`). */
 export function deploymentSection(report) {
   const runs = report.deployment?.executions;
   if (!Array.isArray(runs) || runs.length === 0) return null;

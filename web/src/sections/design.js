@@ -22,7 +22,7 @@ function curvesPlot(columns, chain, bound) {
                y: {label: 'O1, median over seeds'}, series, data, height: 280});
 }
 
-/** Efficiency is given as a share or in per cent. */
+/** Efficiency in per cent. Files give it as a share or in per cent. */
 const percent = (x) => typeof x === 'number' ? fixed(x <= 1.5 ? 100 * x : x, 1) : '–';
 
 function programme(summary) {

@@ -10,7 +10,7 @@ import {causesFigure} from './causes.js';
 
 const SHOWN = 25;
 
-/** One line for each group of texts that say the same; where there are several, the texts fold out. */
+/** One line for a group of texts that say the same. Several texts can be unfolded. */
 function groupLine(group, names) {
   const text = sentence(group.text, names);
   if (group.all.length === 1) return h('li', {}, text);
@@ -23,7 +23,7 @@ function words(title, kind, items, names) {
   return h('div', {class: `words state-${kind}`}, h('h3', {}, title), h('ul', {}, ...groupTexts(items, names).map((group) => groupLine(group, names))));
 }
 
-/** What diagnose says, sentence by sentence: each has its own numbers, so that none is like another. */
+/** The sentences of `diagnose`. They are not grouped, because each has its own numbers. */
 function causeWords(texts, names) {
   if (texts.length === 0) return null;
   return h('div', {class: 'words'}, h('h3', {}, 'What geometry and springs leave, and why'),
@@ -44,7 +44,7 @@ function outlierFigure(report) {
     data: {name: 'outliers.csv', text: () => toCsv(['trial', 'posture', 'marker', 'residual_mm', 'normalised'], outliers.map((o) => [placeOf(o, report).trial, placeOf(o, report).posture, o.marker, o.residual_mm, o.normalised]))}});
 }
 
-/** What was found in a trial, without the name of the trial, which heads the row. */
+/** Findings in a trial, without its name, which is the heading of the row. */
 function trialFindings(trial, names) {
   const found = trial.findings ?? [];
   if (found.length === 0) return trial.used ? '' : 'not used';
@@ -53,7 +53,7 @@ function trialFindings(trial, names) {
   return groupTexts(texts, names).map((group) => h('div', {title: group.all.length > 1 ? group.all.join('\n') : null}, [sentence(group.text, names), othersOf(group)].filter(Boolean).join(' ')));
 }
 
-/** Trials with findings first; of the others the names are enough, as their rows say nothing more. */
+/** A table of the trials with findings. Of the others, only the names are listed. */
 function trialsFigure(report) {
   const {summary} = report;
   const trials = summary.trials ?? [];
@@ -71,7 +71,7 @@ function trialsFigure(report) {
     data: {name: 'trials.csv', text: () => toCsv(['trial', 'used', 'postures', 'samples', 'lag_s', 'lag_sd_s', 'findings'], trials.map((t) => [t.name, String(t.used), t.postures, t.samples, t.clock?.lag_s, t.clock?.sd_s, (t.findings ?? []).join(' ')]))}});
 }
 
-/** Warnings and outliers, in words. */
+/** Warnings and outliers in words. */
 export function findingsSection(report) {
   const {summary} = report;
   if (!summary) return null;

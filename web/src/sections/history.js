@@ -14,7 +14,7 @@ function offsetText(offset, unit) {
   return [value, h('span', {class: 'unit'}, ` ± ${sd} ${unit}`)];
 }
 
-/** A row a joint: each calibration's offset with its 95 % interval, on one scale around zero. */
+/** A row for each joint: the offset in each calibration with its 95 % interval, on a common scale. */
 function dotsAndWhiskers(rows, labels) {
   const end = Math.max(1e-6, ...rows.flatMap((r) => r.of.filter(Boolean).map((o) => Math.abs(o.value) + 1.96 * o.sd)));
   const position = (x) => `${50 + 50 * x / end}%`;
@@ -42,7 +42,7 @@ function movedFigure(comparison) {
     data: {name: 'comparison.csv', text: () => toCsv(['joint', 'F', 'p_adjusted', 'moved'], comparison.joints.map((j) => [j.joint ?? j.name, j.F, j.p_adjusted, String(j.moved)]))}});
 }
 
-/** Fig. 7: this calibration beside earlier ones. */
+/** Fig. 7: this calibration and earlier ones. */
 export function historySection(report) {
   const calibrations = report.calibrations ?? [];
   const rows = calibrations.length > 1 ? offsetsOverTime(calibrations) : [];

@@ -27,7 +27,7 @@ function statusTable(summary) {
   });
 }
 
-/** The figures of the recording: [what, value]; the words say what the value means. */
+/** Figures of the recording with their meaning: [words, value]. */
 function excitationFacts(summary) {
   const e = summary.excitation ?? {};
   const theory = summary.identifiable_theory ? `of ${count(summary.identifiable_theory)} parameters that are identifiable in theory` : 'identifiable parameters';
@@ -40,7 +40,7 @@ function excitationFacts(summary) {
   return h('dl', {class: 'facts small'}, ...items.map(([what, value]) => h('div', {class: 'fact'}, h('dt', {}, what), h('dd', {}, value))));
 }
 
-/** What the recording could tell, and which parameters it could not tell apart. */
+/** The parameters that the recording determines, and those that it cannot tell apart. */
 export function identifiabilitySection(report) {
   const {summary} = report;
   if (!summary?.parameters?.length) return null;

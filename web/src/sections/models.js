@@ -14,7 +14,7 @@ const MODEL_WORDS = {
   rigid: '“rigid” is the geometry of “full” without its springs, as a URDF can carry it',
 };
 
-/** What the cells of the tables are, and the models of their columns. */
+/** Explains the cells of the tables and the models in their columns. */
 function wordsOn(models) {
   const paper = list(models.filter((m) => PAPER[m]).map((m) => `the ${modelName(m)} model ${PAPER[m]}`));
   return 'Each cell has the root mean square (RMSE) of the distances between measured and predicted markers without outliers and, small and grey, the largest of them. ' +

@@ -9,7 +9,7 @@ import {table} from '../lib/table.js';
 
 const TORQUE = 'torque_';
 
-/** What plan's margins say, by their names in the file. */
+/** Explanations of the margins of `plan` by their names in the file. */
 const MARGIN_WORDS = {
   clearance: 'Least distance between two parts of the robot',
   zmp: 'Least distance of the zero-moment point from the edge of the standing feet',

@@ -11,7 +11,7 @@ import {SideBySide} from '../viewer/side_by_side.js';
 
 const SPEEDS = [1, 5, 20];
 
-/** One clock for all robots, and what they are drawn with. */
+/** The common clock of all robots, and the objects that draw them. */
 class Player {
   constructor(view, names) {
     this.view = view;
@@ -70,7 +70,7 @@ class Player {
   }
 }
 
-/** Names that stand over the robots wherever the view has them. */
+/** Keeps the names above the robots in the view. */
 function labels(view, frame, names) {
   const spans = view.heads().map((_, k) => h('span', {class: 'robot-name'}, k === 0 ? 'the plan' : names(view.columns[k - 1].robot)));
   frame.append(...spans);
@@ -81,7 +81,7 @@ function labels(view, frame, names) {
   });
 }
 
-/** Draws the robots into a frame and gives it its panel. */
+/** Draws the robots into a frame and adds its panel. */
 async function start(frame, panel, canvas, report, names) {
   try {
     const playback = await readPlayback(report.deployment.playback);
@@ -99,7 +99,7 @@ async function start(frame, panel, canvas, report, names) {
   }
 }
 
-/** Calls once when an element comes near the window: what nobody looks at costs nothing. */
+/** Calls `call` once when an element comes near the window, so that unseen figures cost nothing. */
 function whenNear(element, call) {
   const observer = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
@@ -109,7 +109,7 @@ function whenNear(element, call) {
   observer.observe(element);
 }
 
-/** The executed robots beside the plan in 3-D; null where nothing was recorded. On paper the table stands for it. */
+/** The robots that executed the plan, beside it in 3-D; null if nothing was recorded. On paper, only the table is shown. */
 export function playbackFigure(report, names) {
   const playback = report.deployment?.playback;
   const robots = playedRobots(playback);

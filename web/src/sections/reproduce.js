@@ -16,14 +16,14 @@ function runBlock(run) {
         rows: inputs.map((i) => [i.file, count(i.bytes), h('code', {class: 'sum', title: i.sha256}, i.sha256)])})}));
 }
 
-/** How to get the same again. */
+/** How to reproduce this result. */
 export function reproduceSection(report) {
   const runs = Object.entries(report.runs ?? {}).map(([command, run]) => ({command, ...run}));
   if (runs.length === 0) return null;
   return section('reproduce', 'Reproduce', 'How to reproduce this result', 'The same version, command line and inputs give the same result.', ...runs.map(runBlock));
 }
 
-/** What this report lacks, and which command makes it. */
+/** Missing parts of this report, and the commands that make them. */
 export function missingSection(report) {
   const missing = report.missing ?? [];
   if (missing.length === 0) return null;

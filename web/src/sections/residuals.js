@@ -9,7 +9,7 @@ import {plot} from '../lib/plot.js';
 
 const firstAndLast = (models) => models.length > 1 ? [models[0], models.at(-1)] : models;
 
-/** Shares of the observations in bins of equal width, before and after. */
+/** Histogram: shares of the observations in bins of equal width, before and after. */
 function histogram(distribution, models) {
   const {edges_mm: edges, counts} = distribution;
   const total = (model) => counts[model].reduce((sum, n) => sum + n, 0) || 1;
@@ -41,7 +41,7 @@ function distributionFigure(data, models) {
   });
 }
 
-/** A row a marker or cluster: from its RMSE before to that after, on one scale. */
+/** A row for each marker or cluster, from its RMSE before to its RMSE after, on a common scale. */
 export function dumbbells(rows, models, unit) {
   const end = Math.max(1e-9, ...rows.flatMap((row) => models.map((m) => row.values[m] ?? 0)));
   const position = (value) => `${100 * value / end}%`;

@@ -19,7 +19,7 @@ function colourBar(end) {
            h('span', {}, `${end} mm: RMSE of the cluster to which a ball belongs`));
 }
 
-/** The controls under the picture and what they do to it. */
+/** The controls below the picture and their effects. */
 class Panel {
   constructor(viewer) {
     this.viewer = viewer;
@@ -111,7 +111,7 @@ function wordsOf(report, measured) {
   return 'The view shows the posture of rest with what the project file says: markers (orange balls), soles (green), and, switched on below, the spheres that stand for the body and the workspaces of hands and feet. Where one is wrong, correct it in the project file and make this page again.';
 }
 
-/** The robot with measured and predicted markers, or as the project has it. */
+/** The robot with measured and predicted markers, or the robot of the project. */
 export function robotSection(report) {
   if (!report.data?.robot?.urdf) return null;
   const canvas = h('canvas', {tabindex: '0', role: 'img', 'aria-label': 'The robot in 3-D. Arrow keys turn the view, plus and minus bring it nearer, 0 takes it back.'});
@@ -120,7 +120,7 @@ export function robotSection(report) {
   const measured = (report.data.markers ?? []).length > 0;
   const result = section('robot', 'Robot', measured ? 'The robot and its residuals' : 'The robot',
     wordsOf(report, measured), frame);
-  // Once the page stands and has its width.
+  // Wait until the page has its width.
   queueMicrotask(() => {
     try {
       const viewer = new Viewer(canvas, report);

@@ -7,7 +7,7 @@ import {figure, section} from '../lib/figure.js';
 import {fixed, plural} from '../lib/format.js';
 import {plot} from '../lib/plot.js';
 
-/** Columns of one excerpt: time, raw, filtered, and the filtered value in chosen frames alone. */
+/** Columns of an excerpt: time, raw, filtered, and filtered in the chosen frames only. */
 export function signalColumns(signal) {
   const millimetres = (text) => Array.from(floats(text), (x) => Number.isFinite(x) ? 1e3 * x : null);
   const filtered = millimetres(signal.filtered);
@@ -30,7 +30,7 @@ function signalPlot(signal) {
   });
 }
 
-/** Fig. 4: the filtered signal and the samples that were chosen of it. */
+/** Fig. 4: the filtered signal and its chosen samples. */
 export function signalSection(report) {
   const signals = report.data?.signals ?? [];
   if (signals.length === 0) return null;

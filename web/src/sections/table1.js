@@ -15,7 +15,7 @@ function inUserUnit(parameter) {
   return withSd(parameter.value * factor, parameter.sd === null ? null : parameter.sd * factor, digits);
 }
 
-/** One parameter: value and standard deviation; grey where the recording hardly tells it, or where it is held. */
+/** Value and standard deviation of a parameter. It is grey if the recording hardly tells it, or if it is held. */
 export function valueCell(parameter) {
   if (!parameter) return '';
   const {unit, factor} = userUnit(parameter.unit);
@@ -37,7 +37,7 @@ export function valueCell(parameter) {
            told ? null : h('span', {class: 'sr-only'}, ` ${STATUS_WORDS[parameter.status]}`));
 }
 
-/** What the columns and the short marks of the table mean. */
+/** Explains the columns and the short marks of the table. */
 function geometryNote(joints) {
   const kinds = kindsOf(joints).filter(({kind}) => !kind.startsWith('compliance'));
   const statuses = new Set([...joints.values()].flatMap((kindsOfJoint) => [...kindsOfJoint.values()].map((p) => p.status)));
@@ -57,17 +57,17 @@ function geometryTable(joints, shown) {
   return table({caption: 'Geometric errors of the joints: value and standard deviation', columns, rows, className: 'table1 geometry'});
 }
 
-/** The stiffness that a compliance means, where it is told from a rigid joint. */
+/** The stiffness for a compliance, unless the joint may be rigid. */
 function stiffnessCell(parameter) {
   const k = parameter?.significant ? stiffness(parameter) : null;
   if (!k) return '';
   return h('span', {title: `95 % interval: ${interval(...stiffnessInterval(parameter))} ${k.unit}`}, withSd(k.value, k.sd).value);
 }
 
-/** The unit of a value beside it, where the head of the column has another one: a slide among joints that turn. */
+/** The unit beside a value if it differs from the column's, for instance for a slide among turning joints. */
 const ownUnit = (unit, ofColumn) => unit && unit !== ofColumn ? h('span', {class: 'sd'}, ` ${unit}`) : null;
 
-/** Of the joints, or of the root link up to those on it. */
+/** The table of compliances of joints, or of the root link up to its joints. */
 function elasticTable(joints, shown, {root}) {
   const kinds = kindsOf(joints).filter(({kind}) => kind.startsWith('compliance') && kind.startsWith('compliance_root') === root);
   const unit = 'µrad/(N·m)', inverse = 'N·m/rad';
@@ -88,7 +88,7 @@ function elasticTables(joints, shown) {
   return h('div', {}, ...[false, true].map((root) => elasticTable(joints, shown, {root})).filter(Boolean));
 }
 
-/** Chains of which Table 1 can show one at a time; without them, the joints’ first words. */
+/** Chains, of which Table 1 shows one at a time; without chains, the first words of the joints' names. */
 export function chainsOf(report, joints) {
   const given = (report.data?.chains ?? []).map(({name, joints: own}) => ({name, joints: new Set(own)}));
   if (given.length > 0) return given.filter((chain) => joints.some((joint) => chain.joints.has(joint)));
@@ -125,7 +125,7 @@ function legsTable(legs) {
   });
 }
 
-/** What gives way between the markers of a foot and the floor; null where no leg stood. */
+/** The springs between the markers of a foot and the floor; null if no leg stood. */
 function solesTable(soles) {
   if (soles.length === 0) return null;
   const cell = (sole) => {
@@ -143,10 +143,10 @@ function solesTable(soles) {
   });
 }
 
-/** A name that may go on in a second line before the kind, for narrow windows. */
+/** A name that narrow windows may break before the kind. */
 const breakable = (name) => h('span', {}, splitName(name).owner, h('wbr'), `.${splitName(name).kind}`);
 
-/** What the data asked for beside geometry and springs; null where that is nothing. */
+/** The causes that were estimated besides geometry and springs; null if there are none. */
 function causesTable(parameters, legNames) {
   const causes = parameters.filter((p) => family(p, legNames) === 'joint' && !KINDS.some(({kind}) => kind === splitName(p.name).kind));
   if (causes.length === 0) return null;
@@ -160,7 +160,7 @@ function causesTable(parameters, legNames) {
   });
 }
 
-/** Waist and markers belong to the experiment, not to the robot: they are folded away. */
+/** Waist and markers, folded away because they belong to the experiment and not to the robot. */
 function externals(parameters, legNames) {
   const rows = parameters.filter((p) => ['marker', 'waist'].includes(family(p, legNames)));
   if (rows.length === 0) return null;

@@ -10,7 +10,7 @@ function fact(value, unit, what) {
            h('dd', {}, value, unit && h('span', {class: 'unit'}, ` ${unit}`)));
 }
 
-/** Leads to what the reader has to look at, which is further down. */
+/** A link to the findings further down, which the reader must see. */
 function linkToFindings(report) {
   const names = knownNames(report);
   const {objections, remarks, warnings} = spoken(report.summary);
@@ -20,17 +20,17 @@ function linkToFindings(report) {
   return h('p', {class: 'verdict-link'}, h('a', {href: '#findings'}, `Read ${list(numbers.map(([n, word]) => plural(n, word)))}`));
 }
 
-/** Where the error of many such postures lies, after the words for it. */
+/** Words, followed by the interval for the error of many such postures. */
 const withInterval = (words, ends) => ends ? `${words} (95 % interval for many such postures: ${fixed(ends[0])} to ${fixed(ends[1])})` : words;
 
-/** What a controller reaches that corrects elasticity as well; nothing where that is no other model. */
+/** The error with a controller that corrects elasticity as well; nothing if the model is the same. */
 function compensatedFact(errors, causes) {
   if (typeof errors?.compensated !== 'number' || errors.compensated === errors.after) return null;
   const what = causes.length === 0 ? 'elasticity, of which a URDF has none' : `elasticity and ${plural(causes.length, 'other cause')}, which a URDF cannot carry`;
   return fact(fixed(errors.compensated), 'mm', withInterval(`the same with compensation of ${what}`, errors.compensatedInterval));
 }
 
-/** What no marker shows: how well the least known end of a limb is where the URDF has it. */
+/** Uncertainty in the URDF of the least known end of a limb, which no marker shows. */
 function frameFact(frames) {
   if (!frames?.length) return null;
   const worst = frames.reduce((a, b) => b.position_sd_mm > a.position_sd_mm ? b : a);
@@ -55,7 +55,7 @@ function facts(summary, errors) {
     fact(count(outliers), '', outliers === 1 ? 'outlier left out' : 'outliers left out'));
 }
 
-/** The head of the page: what came out, in one sentence, and the figures behind it. */
+/** The head of the page: the result in one sentence, and its figures. */
 export function verdictSection(report) {
   const {summary, validation} = report;
   if (!summary) return null;

@@ -4,19 +4,19 @@ import {kindName} from '../lib/format.js';
 
 const POSTURES_PER_SECOND = 1.5;
 
-/** Feet of a cell of motion.csv: links joined by '+', 'both' of the feet known, or 'none'. */
+/** The feet in a cell of motion.csv: links joined by '+', 'both' for all known feet, or 'none'. */
 export function feet(cell, all) {
   if (cell === undefined || cell === null || cell === 'both') return all;
   return cell === 'none' ? [] : String(cell).split('+').filter(Boolean);
 }
 
-/** Every foot that is named in the column of supports, or in the recorded trials. */
+/** All feet in the column of supports or in the recorded trials. */
 function knownFeet(cells, scenes) {
   const named = [...new Set(cells ?? [])].flatMap((cell) => feet(cell, []));
   return [...new Set([...named, ...scenes.flatMap((scene) => scene.support ?? [])])];
 }
 
-/** Positions of all markers from those of the scene's own; NaN for the others. */
+/** Positions of all markers, from those of the scene; NaN for the others. */
 function spread(values, scene, count) {
   const all = new Float32Array(3 * count).fill(NaN);
   scene.markers.forEach((marker, k) => all.set(values.subarray(3 * k, 3 * k + 3), 3 * marker));
@@ -70,12 +70,12 @@ function plannedClip(motion, robot, scenes) {
     moving: true,
     time,
     joints,
-    standing: both < 0 ? null : frame(both),  // how far apart the feet stand
+    standing: both < 0 ? null : frame(both),  // tells the distance of the feet
     at: frame,
   };
 }
 
-/** The posture of rest, of a project with which nothing was done yet. */
+/** The posture of rest, for a project without results. */
 function restClip(project, data) {
   return {
     name: 'posture of rest',
@@ -90,7 +90,7 @@ function restClip(project, data) {
   };
 }
 
-/** All that the viewer can show: recorded trials, then planned motions; of a project alone, its posture of rest. */
+/** All clips for the viewer: recorded trials, then planned motions, or only the posture of rest of a project. */
 export function makeClips(report, robot) {
   const recorded = (report.data?.scenes ?? []).map((scene) => recordedClip(scene, report.data));
   const planned = (report.motions ?? []).map((motion) => plannedClip(motion, robot, report.data?.scenes ?? []));
@@ -99,12 +99,12 @@ export function makeClips(report, robot) {
   return clips.length === 0 && project ? [restClip(project, report.data)] : clips;
 }
 
-/** Where the clip is after `seconds` more of playing, from `position` (a real number of frames). */
+/** Position in the clip (a real number of frames) after playing for `seconds` from `position`. */
 export function advance(clip, position, seconds) {
   if (!clip.moving || clip.time.length < 2) return (position + seconds * POSTURES_PER_SECOND) % clip.count;
   const i = Math.floor(position);
   const j = Math.min(clip.count - 1, i + 1);
   const span = Math.max(1e-3, clip.time[j] - clip.time[i] || 0.1);
-  // Gaps in the recording are not waited for.
+  // Playing does not wait during gaps in the recording.
   return (position + seconds / Math.min(span, 0.5)) % clip.count;
 }

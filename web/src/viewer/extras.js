@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import * as THREE from 'three';
 
-/** Collision spheres, carried by their links. `spheres`: [{link, centre_m, radius_m}]. */
+/** Adds collision spheres to their links. `spheres`: [{link, centre_m, radius_m}]. */
 export function addSpheres(robot, spheres, colour) {
   const material = new THREE.MeshLambertMaterial({color: colour, transparent: true, opacity: 0.28, depthWrite: false});
   return spheres.flatMap((sphere) => {
@@ -14,7 +14,7 @@ export function addSpheres(robot, spheres, colour) {
   });
 }
 
-/** Markers as the project has them: [{link, position_m}]. */
+/** Adds the markers of the project: [{link, position_m}]. */
 export function addMarkers(robot, markers, colour) {
   const material = new THREE.MeshLambertMaterial({color: colour});
   const size = Math.max(...robot.bounds().getSize(new THREE.Vector3()).toArray());
@@ -29,9 +29,9 @@ export function addMarkers(robot, markers, colour) {
   });
 }
 
-/** Undersides of feet: [{link, min_m, max_m}], rectangles in the plane z = 0 of the link. */
+/** Adds the soles of feet: [{link, min_m, max_m}], rectangles in the plane z = 0 of the link. */
 export function addSoles(robot, soles, colour) {
-  const material = new THREE.MeshBasicMaterial({color: colour, side: THREE.DoubleSide, transparent: true, opacity: 0.6, depthTest: false});  // seen through the foot
+  const material = new THREE.MeshBasicMaterial({color: colour, side: THREE.DoubleSide, transparent: true, opacity: 0.6, depthTest: false});  // visible through the foot
   return soles.flatMap((sole) => {
     const link = robot.links[sole.link];
     if (!link) return [];
@@ -43,7 +43,7 @@ export function addSoles(robot, soles, colour) {
   });
 }
 
-/** Workspaces as boxes in the frame of a link, the root's by default: [{link, min_m, max_m}]. */
+/** Adds workspaces as boxes in the frame of a link, by default the root: [{link, min_m, max_m}]. */
 export function addWorkspaces(robot, workspaces, colour) {
   return workspaces.map((workspace) => {
     const min = new THREE.Vector3().fromArray(workspace.min_m);

@@ -13,8 +13,8 @@ function instances(geometry, count, colour = 0xffffff) {
 }
 
 /**
- * Measured markers as balls, predicted ones as small balls at the end of a rod from the measured
- * one, which is as long as the residual times `magnification`.
+ * Shows measured markers as balls. A rod leads from each of them to a small ball, the predicted marker.
+ * The length of the rod is the residual times `magnification`.
  */
 export class MarkerCloud {
   constructor(count) {
@@ -25,7 +25,7 @@ export class MarkerCloud {
     this.residuals = new Map();
   }
 
-  /** The rods of one model, made at their first use. */
+  /** The rods of a model. They are made at their first use. */
   rodsOf(model, colour) {
     if (!this.residuals.has(model)) {
       const tips = instances(new THREE.SphereGeometry(0.009, 12, 8), this.count, colour);
@@ -41,7 +41,7 @@ export class MarkerCloud {
     for (const [model, {tips, rods}] of this.residuals) tips.visible = rods.visible = models.includes(model);
   }
 
-  /** Where the markers were measured: x, y, z of each, m; NaN where it was not seen. */
+  /** Sets the measured positions: x, y, z of each marker, m; NaN if it was not seen. */
   setMeasured(measured) {
     const matrix = new THREE.Matrix4();
     for (let m = 0; m < this.count; ++m) {
@@ -51,7 +51,7 @@ export class MarkerCloud {
     this.measured.instanceMatrix.needsUpdate = true;
   }
 
-  /** Rods from there to where a model predicts them. */
+  /** Sets the rods from the measured to the predicted positions. */
   setPredicted({tips, rods}, measured, predicted, magnification) {
     const from = new THREE.Vector3();
     const to = new THREE.Vector3();

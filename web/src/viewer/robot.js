@@ -5,7 +5,7 @@ import URDFLoader from 'urdf-loader';
 
 const BONE = 0x8a8f98;
 
-/** The meshes that came along, by the file name that the URDF has; others are left out. */
+/** Loads the given meshes by their file names in the URDF. Other meshes are left out. */
 function meshLoader(meshes) {
   return (path, manager, material, done) => {
     const base64 = meshes[path] ?? meshes[path.replace(/^\.?\//, '')];
@@ -22,7 +22,7 @@ function bone(length, direction) {
   return rod;
 }
 
-/** A rod to each joint of a link, so that a robot without shapes can be seen as well. */
+/** Adds a rod to each joint of a link, so that a robot without shapes is visible. */
 function addBones(link) {
   for (const joint of link.children.filter((child) => child.isURDFJoint)) {
     const length = joint.position.length();
@@ -33,7 +33,7 @@ function addBones(link) {
   }
 }
 
-/** A rod along each sliding joint of a link, as long as the joint is out: {joint, rod}. */
+/** Adds a rod along each sliding joint of a link, as long as the joint's position: {joint, rod}. */
 function addSlides(link) {
   return link.children.filter((child) => child.jointType === 'prismatic').map((joint) => {
     const rod = bone(1, joint.axis);
@@ -54,14 +54,14 @@ const meshesOf = (object) => {
 };
 
 /**
- * The robot as the URDF describes it: boxes, cylinders, spheres, and meshes that are given
- * (`meshes`: STL as base64, by file name). z is up in its root link, in metres and radians.
+ * The robot of a URDF, with boxes, cylinders, spheres and the given meshes (`meshes`: STL as base64 by
+ * file name). z is up in its root link. Units are metres and radians.
  */
 export class Robot {
   constructor(urdf, meshes = {}) {
     const loader = new URDFLoader();
     loader.parseCollision = false;
-    loader.packages = (name) => `package://${name}`;  // as the URDF has it
+    loader.packages = (name) => `package://${name}`;  // as in the URDF
     loader.loadMeshCb = meshLoader(meshes);
     this.object = loader.parse(urdf);
     this.links = this.object.links;
@@ -79,7 +79,7 @@ export class Robot {
     }
   }
 
-  /** Sets joints by name; names that the robot has not are passed over. */
+  /** Sets joints by name. Names that the robot does not have are ignored. */
   setPosture(names, values) {
     names.forEach((name, i) => {
       const joint = this.object.joints[name];
@@ -93,7 +93,7 @@ export class Robot {
     }
   }
 
-  /** Puts the root link at a pose: position and quaternion x, y, z, w. */
+  /** Sets the pose of the root link: position and quaternion x, y, z, w. */
   setRoot(position, quaternion) {
     this.object.position.set(...position);
     this.object.quaternion.set(...quaternion);
@@ -101,8 +101,8 @@ export class Robot {
   }
 
   /**
-   * Where the feet of a motion stand, by a frame in which all of them do: apart as they are there,
-   * around the middle of where they are in the zero posture.
+   * Sets where the feet of a motion stand, from a frame in which all of them do: with the distances of
+   * that frame, around their middle in the zero posture.
    */
   placeFeet(joints, standing) {
     this.zero = new Map();
@@ -120,9 +120,9 @@ export class Robot {
   }
 
   /**
-   * Puts the robot so that a foot is where it stands (placeFeet), else where it is in the zero
-   * posture, the root link above the origin and the foot on the ground. Without a foot the root link
-   * stays at the origin.
+   * Places the robot so that a foot is where it stands (placeFeet), or else where it is in the zero
+   * posture with the root link above the origin and the foot on the ground. Without a foot, the root
+   * link is at the origin.
    */
   standOn(linkName) {
     this.setRoot([0, 0, 0], [0, 0, 0, 1]);
@@ -135,7 +135,7 @@ export class Robot {
     this.setRoot(position.toArray(), quaternion.toArray());
   }
 
-  /** Pose of a foot on the ground, all joints at zero. */
+  /** Pose of a foot on the ground if all joints are at zero. */
   zeroPose(linkName) {
     this.zero ??= new Map();
     if (!this.zero.has(linkName)) {
@@ -157,7 +157,7 @@ export class Robot {
     for (const mesh of this.tinted ?? []) mesh.material.color.copy(mesh.userData.own);
     this.tinted = linkNames.flatMap((name) => {
       let link = this.links[name];
-      // A sole often has no shape of its own; then that of the link that it is fixed to.
+      // A sole often has no shape. Then the shape of the link that carries it is coloured.
       while (link && meshesOf(link).length === 0) link = link.parent?.parent?.isURDFLink ? link.parent.parent : null;
       return link ? meshesOf(link) : [];
     });

@@ -5,11 +5,11 @@ import {OKABE_ITO} from '../lib/colours.js';
 import {Robot} from './robot.js';
 import {Stage} from './stage.js';
 
-const LOOKED_AT = 8;  // pictures
+const LOOKED_AT = 8;  // number of pictures
 const GAP = 0.25;     // m between robots
 const UP = new THREE.Vector3(0, 1, 0);
 
-/** A robot whose links are put anywhere, one by one: joints do not hold them. */
+/** A robot whose links are placed one by one, independently of its joints. */
 class LooseRobot {
   constructor(urdf, meshes, links) {
     const robot = new Robot(urdf, meshes);
@@ -34,7 +34,7 @@ class LooseRobot {
   }
 }
 
-/** Rods from where the plan has hands and feet to where the robot is drawn. */
+/** Rods from hands and feet of the plan to those of the drawn robot. */
 class Rods {
   constructor(count, colour) {
     this.object = new THREE.Group();
@@ -59,7 +59,7 @@ class Rods {
   }
 }
 
-/** The plan, and beside it each robot that executed it, over the plan's shadow. */
+/** The plan, and beside it each robot that executed it, drawn over a shadow of the plan. */
 export class SideBySide {
   constructor(canvas, data, playback) {
     this.playback = playback;
@@ -93,7 +93,7 @@ export class SideBySide {
     if (Math.abs(this.stage.camera.aspect - (this.framedAspect ?? 0)) > 0.2) this.frame();
   }
 
-  /** Robots side by side, seen from the front, with room for the whole motion. */
+  /** Places the robots side by side, seen from the front, with room for the whole motion. */
   frame() {
     this.framedAspect = this.stage.camera.aspect;
     const {times} = this.playback;
@@ -104,14 +104,14 @@ export class SideBySide {
       box.union(this.plan.bounds());
     }
     const pitch = box.max.y - box.min.y + GAP;
-    // The plan stands at the left of who looks at the robots' faces.
+    // Seen from the front, the plan is on the left.
     this.columns.forEach((column, k) => column.object.position.set(0, pitch * (k + 1), 0));
     this.names = [0, ...this.columns.map((c) => c.object.position.y)].map((y) => new THREE.Vector3((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2 + y, box.max.z + 0.08));
     box.max.y += pitch * this.columns.length;
     this.stage.frame(box, 0.62);
   }
 
-  /** Where in the picture the robots have their names, as shares of its width and height. */
+  /** Places of the robots' names in the picture, as shares of its width and height. */
   heads() {
     return this.names.map((point) => {
       const {x, y, z} = point.clone().project(this.stage.camera);
@@ -127,7 +127,7 @@ export class SideBySide {
     plan.object.updateMatrixWorld(true);
   }
 
-  /** Draws picture i, displacements `factor` times as large. */
+  /** Draws picture i with displacements multiplied by `factor`. */
   show(i) {
     this.index = i;
     this.placePlan(i);
@@ -146,7 +146,7 @@ export class SideBySide {
   }
 }
 
-/** A pose after a displacement in the axes of the room, `factor` times as large. */
+/** A pose after a displacement in the axes of the room, multiplied by `factor`. */
 function displaced(pose, [x, y, z, ...turn], factor) {
   const vector = new THREE.Vector3(...turn).multiplyScalar(factor);
   const angle = vector.length();

@@ -2,9 +2,9 @@
 import * as THREE from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 
-const FLOOR = 0x7d858f;  // between light and dark: it is seen on both
+const FLOOR = 0x7d858f;  // between light and dark, to be visible on both
 
-/** Camera, light and floor; draws only when something has changed. */
+/** Camera, light and floor. It draws only if something has changed. */
 export class Stage {
   constructor(canvas) {
     this.canvas = canvas;
@@ -15,7 +15,7 @@ export class Stage {
     this.addLights();
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enablePan = false;
-    this.controls.enableZoom = false;  // until the picture has the focus: a page must scroll
+    this.controls.enableZoom = false;  // until the picture has the focus, so that the page can scroll
     canvas.style.touchAction = 'pan-y';
     this.controls.addEventListener('change', () => this.invalidate());
     canvas.addEventListener('focus', () => { this.controls.enableZoom = true; });
@@ -31,7 +31,7 @@ export class Stage {
     this.scene.add(sun);
   }
 
-  /** Looks at a box from the front and a little to the side, and puts the floor under it. */
+  /** Points the camera at a box from the front, a little to the side, and puts the floor under the box. */
   frame(box, yaw) {
     const centre = box.getCenter(new THREE.Vector3());
     const size = box.getSize(new THREE.Vector3());
@@ -56,7 +56,7 @@ export class Stage {
     this.scene.add(this.floor);
   }
 
-  /** Arrows turn the view, plus and minus bring it nearer, 0 takes it back. */
+  /** Arrow keys turn the view, plus and minus zoom, 0 resets it. */
   onKey(event) {
     const offset = this.camera.position.clone().sub(this.controls.target);
     const turn = {ArrowLeft: -0.12, ArrowRight: 0.12}[event.key];
@@ -82,7 +82,7 @@ export class Stage {
     this.invalidate();
   }
 
-  /** Takes a size, and draws again what has been drawn: a picture costs more than all else here. */
+  /** Sets the size, and draws again only if something was drawn, because drawing costs most here. */
   resize(width, height) {
     if (width < 1 || height < 1 || (width === this.width && height === this.height)) return;
     [this.width, this.height] = [width, height];

@@ -11,8 +11,8 @@ import {Stage} from './stage.js';
 const LOOKED_AT = 8;  // frames
 
 /**
- * The robot with what was measured on it. Throws where the browser has no WebGL or the URDF cannot
- * be drawn. State is set by the methods; `show(i)` draws.
+ * The robot with its measurements. Throws if the browser has no WebGL or the URDF cannot be drawn.
+ * Methods set the state, and `show(i)` draws.
  */
 export class Viewer {
   constructor(canvas, report) {
@@ -31,7 +31,7 @@ export class Viewer {
     this.stage.scene.add(this.zmp);
     this.clips = makeClips(report, this.robot);
     const models = this.data.models ?? [];
-    this.shown = models.length > 1 ? [models[0], models.at(-1)] : models;  // whose residuals
+    this.shown = models.length > 1 ? [models[0], models.at(-1)] : models;  // their residuals are shown
     this.magnification = 20;
     this.byCluster = true;
     this.framed = null;
@@ -48,13 +48,13 @@ export class Viewer {
     this.show(0);
   }
 
-  /** The clip to begin with: postures on which most markers are seen. */
+  /** The first clip to show: postures in which most markers are seen. */
   firstClip() {
     const seen = (clip) => clip.moving ? 0 : clip.markers;
     return this.clips.reduce((best, clip, i) => seen(clip) > seen(this.clips[best]) ? i : best, 0);
   }
 
-  /** RMSE, mm, that has the brightest colour: of the worst cluster, uncalibrated. */
+  /** RMSE, mm, for the brightest colour: the largest of any cluster and model, rounded up. */
   get scaleEnd() {
     const worst = Math.max(0, ...(this.data.clusters ?? []).flatMap((c) => Object.values(c.rmse_3d_mm ?? {})));
     return worst > 0 ? Math.ceil(worst) : 1;
@@ -79,7 +79,7 @@ export class Viewer {
     this.stage.invalidate();
   }
 
-  /** Looks so that the whole clip, by a few of its frames, has room. */
+  /** Points the camera so that the whole clip, judged by a few frames, is in view. */
   frameClip() {
     this.framed = this.clip;
     const frames = Math.min(LOOKED_AT, this.clip?.count ?? 0);
@@ -116,7 +116,7 @@ export class Viewer {
     if (frame.zmp) this.zmp.position.set(frame.zmp[0], frame.zmp[1], 0.003);
   }
 
-  /** RMSE of the markers of frame i by a model, mm; NaN without any. */
+  /** RMSE of the markers in frame i with a model, mm; NaN without markers. */
   rmse(i, model) {
     const frame = this.clip?.at(i);
     const predicted = frame?.predicted?.(model);

@@ -7,16 +7,16 @@ import {chromium} from 'playwright-core';
 
 const PLACES = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
 
-/** Where a Chromium is; undefined where there is none. */
+/** Path of a Chromium, or undefined. */
 export const chromiumPath = () => PLACES.find((path) => path && existsSync(path));
 
-/** Headless, with WebGL in software, and without calls home. */
+/** Options: headless, WebGL in software, no calls home. */
 const FLAGS = [
   '--headless=new', '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
   '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run', '--disable-quic',
 ];
 
-/** A real browser with an empty profile of its own, which is thrown away when it closes. */
+/** A real browser with a new profile, which is removed when it closes. */
 export async function openBrowser() {
   const profile = mkdtempSync(join(tmpdir(), 'elastocal-chromium-'));
   const context = await chromium.launchPersistentContext(profile, {executablePath: chromiumPath(), args: FLAGS, acceptDownloads: true});

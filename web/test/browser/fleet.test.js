@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of a fleet in a real browser, with data made by hand and, where FLEET names one, with one that the program made.
+// A fleet's page in a real browser, with data made by hand and, if FLEET names a page, also with one that the program made.
 import assert from 'node:assert/strict';
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';

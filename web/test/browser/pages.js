@@ -3,8 +3,8 @@ import {readFileSync} from 'node:fs';
 import {pathToFileURL} from 'node:url';
 
 /**
- * Opens a file; `problems`: what the console, scripts and dialogs said; `requests`: all but the file.
- * WebGL in software takes most of the time: it has a quarter of the pixels, the layout is the same.
+ * Opens a file. `problems`: messages of console, scripts and dialogs. `requests`: all except the file.
+ * WebGL in software takes most of the time, so it has a quarter of the pixels, with the same layout.
  */
 export async function openPage(browser, file, options = {}) {
   const page = await browser.newPage({viewport: {width: 1280, height: 900}, deviceScaleFactor: 0.5, acceptDownloads: true, ...options});
@@ -15,13 +15,13 @@ export async function openPage(browser, file, options = {}) {
   page.on('pageerror', (error) => problems.push(error.message));
   page.on('dialog', (dialog) => { problems.push(`dialog: ${dialog.message()}`); dialog.dismiss(); });
   page.on('request', (request) => !request.url().startsWith('data:') && !request.url().startsWith('blob:') && request.url() !== url && requests.push(request.url()));
-  page.setDefaultTimeout(120000);  // beside other work, WebGL in software takes long
+  page.setDefaultTimeout(120000);  // WebGL in software is slow beside other work
   await page.goto(url);
   await page.waitForSelector('#app[data-complete]', {state: 'attached'});
   return {page, problems, requests};
 }
 
-/** What WebGL in software says of itself when pixels are read back: no fault of the page. */
+/** A message of WebGL in software when pixels are read back, which is no fault of the page. */
 const isDriverNote = (text) => /GPU stall due to ReadPixels|GL Driver Message/.test(text);
 
 /** Milliseconds from the start of loading to the first picture of the viewer. */
@@ -30,7 +30,7 @@ export async function waitForViewer(page) {
   return page.getAttribute('.viewer', 'data-ready');
 }
 
-/** What the 3-D view shows: how many pixels are drawn, in how many colours, and a number for all. */
+/** Contents of the 3-D view: number of drawn pixels, number of colours, and a hash of all. */
 export function picture(page, canvas = '.viewer canvas') {
   return page.evaluate(async (selector) => {
     await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));

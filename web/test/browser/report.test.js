@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page in a real browser, with a report made by hand and, where REPORT names one, with one that
-// the program made. TEMPLATE: the built page; default web/dist/index.html.
+// The page in a real browser, with a report made by hand and, if REPORT names one, also with one that
+// the program made. TEMPLATE is the built page, by default web/dist/index.html.
 import assert from 'node:assert/strict';
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -21,7 +21,7 @@ const triangle = join(folder, 'triangle.html');
 const files = {sample, ...(process.env.REPORT && {program: resolve(process.env.REPORT)})};
 let browser;
 
-/** A page at 1280 x 900 for all tests that only read it: opening one takes longer than they do. */
+/** Tests that only read share a page of 1280 x 900, because opening one takes longer than such a test. */
 const kept = {};
 const keptPage = (file) => kept[file] ??= openPage(browser, file);
 
@@ -80,7 +80,7 @@ for (const [name, file] of Object.entries(files)) {
       await page.setViewportSize({width, height: 900});
       await page.emulateMedia({media});
       const meetings = await page.evaluate(() => {
-        // What is drawn, not the boxes: text may stick out of a box.
+        // Measure the drawn text, which may stick out of its box.
         const drawn = (element) => { const range = document.createRange(); range.selectNodeContents(element); return [...range.getClientRects()]; };
         const meet = (a, b) => a.left < b.right - 0.5 && b.left < a.right - 0.5 && a.top < b.bottom - 0.5 && b.top < a.bottom - 0.5;
         return [...document.querySelectorAll('.facts')].flatMap((facts) => {
@@ -145,7 +145,7 @@ for (const [name, file] of Object.entries(files)) {
       if (!['estimated', 'unsupported'].includes(p.status) || /^(marker|waist)\./.test(p.name) || !shown.has(p.name)) continue;
       const factor = unit[p.unit];
       assert.equal(Number(shown.get(p.name).value), p.value);
-      // Rounded to the second digit of the standard deviation: at most half of it away, and that is at most sd / 20.
+      // Rounding to the second digit of the standard deviation changes the value by at most half a unit, so by sd / 20.
       const off = Math.abs(Number(shown.get(p.name).text.replace('−', '-').replaceAll('\u202f', '')) - p.value * factor);
       assert.ok(off <= 0.051 * p.sd * factor, `${p.name}: ${shown.get(p.name).text}`);
       ++checked;
@@ -169,7 +169,7 @@ for (const [name, file] of Object.entries(files)) {
       const [download] = await Promise.all([page.waitForEvent('download'), button.evaluate((b) => b.click())]);
       saved.push([download.suggestedFilename(), readFileSync(await download.path(), 'utf8')]);
     }
-    // Of the others, what the page would hand to the browser: opening it once more takes longer than all of this.
+    // For the others, take the data that the page would save. Opening the page once more would take longer.
     saved.push(...await page.evaluate((others) => {
       const names = [], blobs = [];
       URL.createObjectURL = (blob) => { blobs.push(blob); return 'blob:kept'; };
@@ -204,7 +204,7 @@ for (const [name, file] of Object.entries(files)) {
 
   test(`${name}: the viewer is there within 2 s, or 16 times what one triangle takes, in less than 5 MB`, async (t) => {
     const times = {viewer: [], triangle: []};
-    // Other tests may run beside this one: the quickest of up to six counts.
+    // Other tests may run at the same time, so the quickest of up to six counts.
     const limit = () => Math.max(2000, 16 * Math.min(...times.triangle));
     const tooLate = () => !(Math.min(...times.viewer) < limit());
     while (times.viewer.length < 6 && tooLate()) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /**
- * A page with one triangle in WebGL and nothing else: what a picture costs on this machine at least.
- * It says when it is drawn as the viewer does.
+ * A page with a single triangle in WebGL: the least time of a picture on this machine.
+ * It signals that it is drawn like the viewer.
  */
 export const trianglePage = `<!doctype html><meta charset="utf-8"><canvas width="600" height="400"></canvas>
 <script type="module">

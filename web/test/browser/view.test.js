@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the 3-D view draws of a robot without a calibration.
+// The 3-D view of a robot without a calibration.
 import assert from 'node:assert/strict';
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -54,7 +54,7 @@ test('meshes are drawn where they came along, and a robot without any is drawn b
 });
 
 test('a robot that stands with its feet apart does not jump when the weight goes to the other foot', async () => {
-  const speck = '<visual><geometry><box size="1e-6 1e-6 1e-6"/></geometry></visual>';  // the green of a foot is not seen
+  const speck = '<visual><geometry><box size="1e-6 1e-6 1e-6"/></geometry></visual>';  // too small to show the green of a foot
   const leg = (side, y) => `<link name="${side}">${speck}</link><joint name="${side}_hip" type="revolute"><parent link="root"/><child link="${side}"/><origin xyz="0 ${y} 0"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
     <link name="${side}_sole">${speck}</link><joint name="${side}_fixed" type="fixed"><parent link="${side}"/><child link="${side}_sole"/><origin xyz="0 0 -0.8"/></joint>`;
   const urdf = `<robot name="r"><link name="root"><visual><geometry><box size="0.3 0.3 0.3"/></geometry></visual></link>${leg('left', 0.1)}${leg('right', -0.1)}</robot>`;

@@ -94,7 +94,7 @@ test('a sound calibration is to be deployed, and what could not be identified is
   assert.equal(result.state, 'deploy');
   assert.equal(result.sentence, 'Calibrated from 8.50 to 0.35\u00a0mm on motions that took no part in the estimate.');
   assert.deepEqual(undetermined(good), ['b.alpha']);
-  // Its value is in the URDF: it does not stay at nominal.
+  // The URDF has its value, so it is not at nominal.
   assert.equal(result.rest, 'The recording hardly tells b.alpha: this parameter has its most probable value.');
 });
 
