@@ -16,14 +16,10 @@ namespace {
 
 /// The root link's way from `begin` to `end`, without regard to dynamics.
 std::vector<Transform> RootWay(const Stretch& stretch) {
-  const Transform& from = stretch.begin.T_world_root;
-  const Transform& to = stretch.end.T_world_root;
-  const Eigen::Vector3d turn = RotationVector(to.linear() * from.linear().transpose());
-  std::vector<Transform> way(Size(stretch.sample_count()), from);
+  std::vector<Transform> way(Size(stretch.sample_count()));
   for (std::size_t i = 0; i < way.size(); ++i) {
     const double s = SmoothStep(static_cast<double>(i) / static_cast<double>(way.size() - 1));
-    way[i].translation() += s * (to.translation() - from.translation());
-    way[i].linear() = RotationFromVector(s * turn) * from.linear();
+    way[i] = RootBetween(stretch.begin.T_world_root, stretch.end.T_world_root, s);
   }
   return way;
 }
@@ -115,6 +111,14 @@ class CartOnTable {
 };
 
 }  // namespace
+
+Transform RootBetween(const Transform& begin, const Transform& end, double share) {
+  const Eigen::Vector3d turn = RotationVector(end.linear() * begin.linear().transpose());
+  Transform T = begin;
+  T.translation() += share * (end.translation() - begin.translation());
+  T.linear() = RotationFromVector(share * turn) * begin.linear();
+  return T;
+}
 
 BalancedStretch Balance(const StandingRobot& robot, const Stretch& stretch,
                         const BalanceOptions& options) {

@@ -57,4 +57,8 @@ struct BalancedStretch {
 BalancedStretch Balance(const StandingRobot& robot, const Stretch& stretch,
                         const BalanceOptions& options);
 
+/// Pose of the root link after a share of its way from one pose to another, without regard to
+/// dynamics: straight, and turning about one axis.
+Transform RootBetween(const Transform& begin, const Transform& end, double share);
+
 }  // namespace elastocal

@@ -292,6 +292,10 @@ TEST_F(BalancedWalker, SwingsJointsToAndFro) {
 TEST_F(BalancedWalker, SwingsALiftedLegWellAboveTheFloor) {
   PostureTour set{.name = "leg", .standing = {0}, .postures = {}};
   set.sines = robot_.legs[1].coordinates();
+  for (const double swing : {-0.5, 0.5}) {  // the foot is lowest on the way from one to the other
+    set.postures.push_back(robot_.rest);
+    set.postures.back()[set.sines[2]] += swing;
+  }
   const PlannedTour planned = PlanTour(robot_, set, {});
   EXPECT_TRUE(planned.left_out.empty());
   std::vector<double> heights;

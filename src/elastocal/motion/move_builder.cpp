@@ -8,6 +8,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/math/smooth_step.hpp"
+#include "elastocal/motion/swinging_feet.hpp"
 #include "elastocal/robot/inverse_dynamics.hpp"
 
 namespace elastocal {
@@ -23,43 +24,15 @@ Eigen::VectorXd ShareOfWay(Eigen::Index samples, Eigen::Index before, Eigen::Ind
   return progress;
 }
 
-// Least height of a swinging foot between lifting and landing, as a share of the leg's length: feet
-// of a robot that is not calibrated were lower than planned by up to a fiftieth of it.
-constexpr double kLeastHeight = 0.025;
-
-/// Heights of the lowest points of a swinging foot, m.
-std::vector<double> HeightsOfFoot(const StandingRobot& robot, int foot,
-                                  const std::vector<int>& standing, const Eigen::VectorXd& q) {
-  const Transform T_world_sole =
-      RootOverFeet(robot, standing, q) * robot.legs[Size(foot)].SolePose(q);
-  return HeightsOverFloor(robot.soles[Size(foot)], T_world_sole);
-}
-
-std::vector<int> SwingingFeet(const StandingRobot& robot, const std::vector<int>& standing) {
-  std::vector<int> swinging;
-  for (const int foot : robot.AllFeet()) {
-    if (std::find(standing.begin(), standing.end(), foot) != standing.end()) continue;
-    swinging.push_back(foot);
+/// Pose of the root link while the joints are at `q` on the way from one posture to another.
+Transform RootOnTheWay(const PlacedPosture& from, const PlacedPosture& to,
+                       const std::vector<int>& moving, const Eigen::VectorXd& q) {
+  double along = 0.0, whole = 0.0;
+  for (const int c : moving) {
+    along += (q[c] - from.q[c]) * (to.q[c] - from.q[c]);
+    whole += (to.q[c] - from.q[c]) * (to.q[c] - from.q[c]);
   }
-  return swinging;
-}
-
-/// Distances of the robot's own parts, then heights of the lowest points of swinging feet, scaled
-/// so that the least height counts as the distance that parts are to have.
-Eigen::VectorXd DistancesAboveFloor(const StandingRobot& robot, const std::vector<int>& standing,
-                                    double wanted, const Eigen::VectorXd& q) {
-  const Eigen::VectorXd apart = robot.clearances ? robot.clearances(q) : Eigen::VectorXd();
-  std::vector<double> heights;
-  for (const int foot : SwingingFeet(robot, standing)) {
-    const std::vector<double> lowest = HeightsOfFoot(robot, foot, standing, q);
-    heights.insert(heights.end(), lowest.begin(), lowest.end());
-  }
-  Eigen::VectorXd all(apart.size() + static_cast<Eigen::Index>(heights.size()));
-  all.head(apart.size()) = apart;
-  const double scale = wanted / (kLeastHeight * robot.leg_length);
-  std::transform(heights.begin(), heights.end(), all.data() + apart.size(),
-                 [&](double height) { return scale * height; });
-  return all;
+  return RootBetween(from.T_world_root, to.T_world_root, whole > 0.0 ? along / whole : 0.0);
 }
 
 constexpr double kEnds = 0.5;  // s, hold at either end, in which the root link starts and stops
@@ -104,7 +77,7 @@ std::optional<Refusal> MoveBuilder::KeepAtRest(const std::vector<int>& standing,
   if (!options_.balanced) return std::nullopt;
   const MotionMargins margins =
       CheckMotion(robot_, {options_.rate_hz, pose.q.transpose(), {standing}});
-  if (margins.floor.value < kLeastHeight * robot_.leg_length) {
+  if (margins.floor.value < LeastHeight(robot_)) {
     return Refusal{Constraint::kFloor, margins.floor.value, margins.floor.index};
   }
   MotionLimits limits = robot_.limits;
@@ -288,9 +261,9 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Move(const PlacedPosture& from, cons
   }
   const bool turns_root = !standing.empty() && robot_.legs[Size(standing.front())].turns_root();
   const Clearances apart = [&](const Eigen::VectorXd& q) {
-    PlacedPosture pose{q, from.T_world_root};
+    PlacedPosture pose{q, RootOnTheWay(from, to, moving, q)};
     if (turns_root && !PlaceFeet(robot_, standing, pose)) pose.q = q;
-    return DistancesAboveFloor(robot_, standing, options_.path.clearance, pose.q);
+    return DistancesAboveFloor(robot_, standing, options_.path.clearance, pose);
   };
   JointPath path = PlanJointPath(robot_, apart, from.q, to.q, moving, options_.path);
   for (int i = 0; i <= options_.slower; ++i, path.duration_s *= kSlower) {
@@ -331,13 +304,12 @@ std::optional<Eigen::MatrixXd> MoveBuilder::Sine(const PlacedPosture& at,
                                                  const std::vector<int>& standing, int coordinate,
                                                  double share, Refusal& why) const {
   const Eigen::MatrixXd way = SineWay(at.q, coordinate, share);
-  if (standing.empty()) return Follow(at, at, standing, way, why);
   for (const int foot : SwingingFeet(robot_, standing)) {
     const auto height = [&](const Eigen::VectorXd& q) {
-      const std::vector<double> heights = HeightsOfFoot(robot_, foot, standing, q);
+      const std::vector<double> heights = HeightsOfFoot(robot_, foot, {q, at.T_world_root});
       return *std::min_element(heights.begin(), heights.end());
     };
-    const double least = std::min(kLeastHeight * robot_.leg_length, height(at.q));
+    const double least = std::min(LeastHeight(robot_), height(at.q));
     for (Eigen::Index i = 0; i < way.rows(); ++i) {
       const double there = height(way.row(i).transpose());
       if (there >= least) continue;
