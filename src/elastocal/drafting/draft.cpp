@@ -228,9 +228,29 @@ void JoinMirrors(ProjectDraft& draft) {
   draft.designs = std::move(joined);
 }
 
+/// Names the joints of toes, which lie beyond the feet.
+void WarnOfToes(ProjectDraft& draft) {
+  std::string names;
+  for (std::size_t k = 0; k < draft.tree.joints.size(); ++k) {
+    int foot = static_cast<int>(k) + 1;
+    const bool wheel = !std::isfinite(draft.tree.joints[k].limits.lower);
+    if (!draft.limbs.tool[Size(foot)] || wheel) continue;
+    while (draft.limbs.tool[Size(foot)]) foot = draft.tree.joints[Size(foot - 1)].parent_body;
+    const bool leg = std::any_of(draft.limbs.limbs.begin(), draft.limbs.limbs.end(),
+                                 [&](const Limb& l) { return l.leg && l.tip_body == foot; });
+    if (leg) names += (names.empty() ? "" : ", ") + Quote(draft.tree.joints[k].name);
+  }
+  if (names.empty()) return;
+  draft.warnings.push_back(
+      "soles are those of the feet without toes, and the joints of toes are "
+      "not calibrated but stay at rest: " +
+      names);
+}
+
 void WarnOfGuesses(ProjectDraft& draft) {
   draft.warnings.insert(draft.warnings.end(), draft.rest.warnings.begin(),
                         draft.rest.warnings.end());
+  WarnOfToes(draft);
   int guessed = 0;
   for (const BodyShape& body : draft.shapes.bodies) guessed += body.guessed ? 1 : 0;
   if (guessed > 0) {

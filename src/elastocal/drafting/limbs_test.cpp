@@ -86,5 +86,18 @@ TEST(Limbs, GoOnBehindAJointThatFollows) {
   EXPECT_EQ(EndOfNeck(RobotWithNeck(false)), "lower_neck");
 }
 
+// A forearm that ends in a gripper, without a wrist: its fingers are far from the elbow.
+TEST(Limbs, FingersOnALongForearmAreNoLimbs) {
+  std::string urdf = UpperBody(0.35, 0.1);
+  for (const std::string side : {"l", "r"}) {
+    const std::string a = side + "_dito_a", b = side + "_dito_b", forearm = side + "_3";
+    urdf.insert(urdf.rfind("</robot>"),
+                JointText(forearm, a, "", "0 0.02 -0.45") +
+                    JointText(forearm, b, "<mimic joint='" + a + "_joint' multiplier='-1'/>",
+                              "0 -0.02 -0.45"));
+  }
+  EXPECT_EQ(DraftProject(urdf, "r.urdf", {}).limbs.limbs.size(), 3u) << "two arms and a head";
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -26,12 +26,6 @@ struct FootPoints {
   double floor = std::numeric_limits<double>::infinity();
 };
 
-/// Whether the name is that of a sole.
-bool NamedSole(const std::string& name) {
-  const std::vector<std::string> words = WordsOf(name);
-  return std::find(words.begin(), words.end(), "sole") != words.end();
-}
-
 /// A link of the foot's body that lies flat at this height: one that is named as a sole, else the
 /// lowest; nothing if there is none.
 std::optional<int> FlatLink(const RobotTree& tree, int body, const std::vector<Transform>& T_root,
