@@ -80,6 +80,15 @@ TEST(Limbs, ArmsThatEndLowestAreNoLegs) {
   EXPECT_EQ(CountLegs(UpperBody(-0.1, 0.5, "leg_arm_")), 2) << "a rocker arm of a leg";
 }
 
+// The draft gets a root link that looks ahead.
+TEST(Limbs, OfARobotThatLooksAlongYAreFound) {
+  std::string urdf = UpperBody(-0.1, 0.5);
+  urdf.insert(urdf.rfind("</robot>"),
+              "<link name='cad'/><joint name='cad_fixed' type='fixed'><parent link='cad'/><child "
+              "link='base'/><origin rpy='0 0 1.5708'/></joint>");
+  EXPECT_EQ(CountLegs(urdf), 2);
+}
+
 TEST(Limbs, GoOnBehindAJointThatFollows) {
   EXPECT_EQ(EndOfNeck(RobotWithNeck(true)), "head");
   // A finger ends with what follows: nothing behind it moves by itself.
