@@ -126,6 +126,7 @@ PyPlan PlanFor(const ProjectOrFile& project_or_file, const py::object& postures,
   } else {
     given = PosturesOf(postures, project);
   }
+  CheckTries(project, tries);
   return Unlocked([&] {
     PyPlan planned{project,
                    kind ? PlanValidationMotion(project, of, seed, options, progress)

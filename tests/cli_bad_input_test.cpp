@@ -96,6 +96,14 @@ TEST_F(Program, UnknownKeyJointAndMarkerComeWithTheNearestKnownName) {
                 {"p.yaml:3", "'N'"});
 }
 
+// Nothing is planned for robots that cannot stand: planning takes minutes.
+TEST_F(Program, RobotsOnNoSolesAreRefusedBeforeTheMotionIsPlanned) {
+  const ProgramResult result = RunProgram("plan " + project_ + " --kind random --robots 1 -o " +
+                                          (scratch_.path() / "motion.csv").string());
+  ExpectRefused(result, {"--robots", "no section 'standing'"});
+  EXPECT_EQ(result.out, "");
+}
+
 TEST_F(Program, BadCellsAreNamedByLineAndColumn) {
   ExpectRefused(Calibrate(project_, WithCell(5, 2, "oops")), {"changed.csv:6", "oops"});
   ExpectRefused(Calibrate(project_, WithCell(5, 2, "nan")), {"changed.csv:6", "nan"});

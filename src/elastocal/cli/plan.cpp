@@ -141,6 +141,8 @@ void RefuseIdleApproach(const PlanCommand& command, const Project& project) {
 int Plan(const PlanCommand& command) {
   const Project described = ReadProject(command.project);
   RefuseIdleApproach(command, described);
+  const MotionTrialOptions tries = TrialOptions(command);
+  CheckTries(described, tries);
   const Project project = LeaveRoom(described, command.limit_margin_deg * M_PI / 180.0);
   std::vector<ChainPostures> postures;
   std::vector<std::string> chains;
@@ -166,7 +168,6 @@ int Plan(const PlanCommand& command) {
   const bool quiet = command.common.Silent();
   const Progress progress = TerminalProgress("planned chain", quiet);
   const MotionPlanOptions options = PlanOptions(command);
-  const MotionTrialOptions tries = TrialOptions(command);
   MotionPlan plan = command.kind.empty() ? PlanMotion(project, postures, options, progress)
                                          : PlanValidationMotion(project, KindNamed(command.kind),
                                                                 tries.seed, options, progress);

@@ -10,6 +10,7 @@
 
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/drafting/arm_rest.hpp"
+#include "elastocal/drafting/root_attitude.hpp"
 #include "elastocal/drafting/standing_draft.hpp"
 #include "elastocal/drafting/workspaces.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -228,9 +229,29 @@ void JoinMirrors(ProjectDraft& draft) {
   draft.designs = std::move(joined);
 }
 
+/// Names the joints of toes, which lie beyond the feet.
+void WarnOfToes(ProjectDraft& draft) {
+  std::string names;
+  for (std::size_t k = 0; k < draft.tree.joints.size(); ++k) {
+    int foot = static_cast<int>(k) + 1;
+    const bool wheel = !std::isfinite(draft.tree.joints[k].limits.lower);
+    if (!draft.limbs.tool[Size(foot)] || wheel) continue;
+    while (draft.limbs.tool[Size(foot)]) foot = draft.tree.joints[Size(foot - 1)].parent_body;
+    const bool leg = std::any_of(draft.limbs.limbs.begin(), draft.limbs.limbs.end(),
+                                 [&](const Limb& l) { return l.leg && l.tip_body == foot; });
+    if (leg) names += (names.empty() ? "" : ", ") + Quote(draft.tree.joints[k].name);
+  }
+  if (names.empty()) return;
+  draft.warnings.push_back(
+      "soles are those of the feet without toes, and the joints of toes are "
+      "not calibrated but stay at rest: " +
+      names);
+}
+
 void WarnOfGuesses(ProjectDraft& draft) {
   draft.warnings.insert(draft.warnings.end(), draft.rest.warnings.begin(),
                         draft.rest.warnings.end());
+  WarnOfToes(draft);
   int guessed = 0;
   for (const BodyShape& body : draft.shapes.bodies) guessed += body.guessed ? 1 : 0;
   if (guessed > 0) {
@@ -264,22 +285,43 @@ void WarnOfGuesses(ProjectDraft& draft) {
   }
 }
 
+/// Gives the draft a root link that looks ahead.
+void TakeAttitude(const RootAttitude& attitude, const std::string& source, const MeshPlaces& places,
+                  RobotTree& described, ProjectDraft& draft) {
+  draft.warnings.push_back(
+      "the root link " + Quote(described.links[0].name) +
+      " does not look along x, with z up, from the robot's plane of symmetry: the copy of the "
+      "robot "
+      "description has a root link " +
+      Quote(attitude.link) +
+      " that does. What stands in the frame of the root link is in that of the new one; where "
+      "a controller must find the old root, take the new link and its joint out of the calibrated "
+      "robot description again");
+  draft.urdf = AddRootLink(draft.urdf, described, attitude);
+  described = ParseUrdf(draft.urdf, source);
+  draft.shapes = ReadBodyShapes(described, draft.urdf, source, places);
+}
+
 }  // namespace
 
 ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
                           const Semantics& semantics, const MeshPlaces& places) {
-  const RobotTree described = ParseUrdf(urdf, source);
+  RobotTree described = ParseUrdf(urdf, source);
   if (described.joints.empty()) {
     throw InputError(source + ": the robot has no movable joint; nothing can be calibrated");
   }
   CheckBelongs(semantics, described);
   ProjectDraft draft;
+  draft.urdf = urdf;
   draft.shapes = ReadBodyShapes(described, urdf, source, places);
   draft.warnings = draft.shapes.warnings;
   draft.warnings.insert(draft.warnings.end(), described.warnings.begin(), described.warnings.end());
+  if (const auto attitude = FindRootAttitude(described, draft.shapes, semantics)) {
+    TakeAttitude(*attitude, source, places, described, draft);
+  }
   draft.limbs = FindLimbs(described, draft.shapes, semantics);
   draft.soles = FindSoles(described, draft.shapes, draft.limbs);
-  draft.urdf = AddSoleLinks(urdf, described, draft.soles);
+  draft.urdf = AddSoleLinks(draft.urdf, described, draft.soles);
   draft.tree = ParseUrdf(draft.urdf, source);
   NameTips(described, draft);
   draft.stance = ChooseStance(draft.tree, draft.limbs, draft.soles);

@@ -65,6 +65,11 @@ int SideByNames(const RobotTree& tree, const Limb& limb) {
   return votes > 0 ? 1 : votes < 0 ? -1 : 0;
 }
 
+bool NamedSole(const std::string& name) {
+  const std::vector<std::string> words = WordsOf(name);
+  return std::find(words.begin(), words.end(), "sole") != words.end();
+}
+
 bool IsArmByNames(const RobotTree& tree, const Limb& limb) {
   return Says(tree, limb, {"arm", "elbow", "forearm", "wrist", "hand", "palm", "gripper"}) &&
          !Says(tree, limb,

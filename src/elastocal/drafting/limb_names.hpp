@@ -11,6 +11,9 @@ namespace elastocal {
 /// The words of a name in lower case: "l", "knee" and "pitch" for "l_knee_pitch" and "LKneePitch".
 std::vector<std::string> WordsOf(const std::string& name);
 
+/// Whether the name is that of a sole.
+bool NamedSole(const std::string& name);
+
 /// Side of the robot according to the names of a limb's joints and tip: 1 left, -1 right, 0
 /// unknown. "left_knee", "LKneePitch", "l_knee", "knee_l" and, on four legs, "FL_calf" and "LF_KFE"
 /// are left.

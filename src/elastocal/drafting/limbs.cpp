@@ -9,7 +9,9 @@
 
 #include "elastocal/drafting/limb_names.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/motion/leg_chain.hpp"
 #include "elastocal/robot/legs.hpp"
+#include "elastocal/robot/moving_chain.hpp"
 
 namespace elastocal {
 namespace {
@@ -51,6 +53,25 @@ bool MovesByItselfBeyond(const RobotTree& tree, int body) {
   });
 }
 
+/// Reach of the branches of a body from their middle, m: a forearm is long, its fingers are not. Of
+/// a single branch, its reach from the body.
+double ReachOfFingers(const RobotTree& tree, int body, const std::vector<int>& branches) {
+  if (branches.size() < 2) return Reach(tree, body);
+  std::vector<Eigen::Vector3d> places;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const int branch : branches) {
+    const Joint& joint = tree.joints[Size(branch - 1)];
+    places.push_back(tree.links[Size(joint.parent_link)].T_body_link *
+                     joint.T_parent_child.translation());
+    middle += places.back() / static_cast<double>(branches.size());
+  }
+  double longest = 0.0;
+  for (std::size_t i = 0; i < branches.size(); ++i) {
+    longest = std::max(longest, (places[i] - middle).norm() + Reach(tree, branches[i]));
+  }
+  return longest;
+}
+
 /// Marks bodies that belong to a gripper or to fingers.
 std::vector<bool> FindTools(const RobotTree& tree) {
   constexpr double kShort = 0.22;
@@ -61,7 +82,7 @@ std::vector<bool> FindTools(const RobotTree& tree) {
   for (int body = 1; body < tree.body_count(); ++body) {
     const std::vector<int> branches = Branches(tree, body);
     if (JointsToBody(tree, body).size() < kLeastJoints || branches.empty()) continue;
-    if (Reach(tree, body) > kShort * longest) continue;
+    if (ReachOfFingers(tree, body, branches) > kShort * longest) continue;
     const bool mimics = std::any_of(branches.begin(), branches.end(), [&](int b) {
       return tree.joints[Size(b - 1)].mimic && !MovesByItselfBeyond(tree, b);
     });
@@ -250,6 +271,45 @@ void FindFeet(const RobotTree& tree, const RobotShapes& shapes, std::vector<Limb
   }
 }
 
+/// Height of the lowest point of a body's shape in the zero posture, m; infinite where no shape
+/// says.
+double LowestPoint(const RobotShapes& shapes, const std::vector<Transform>& poses, int body) {
+  double lowest = std::numeric_limits<double>::infinity();
+  if (shapes.bodies[Size(body)].guessed) return lowest;
+  for (const Eigen::Vector3d& p : shapes.bodies[Size(body)].points) {
+    lowest = std::min(lowest, (poses[Size(body)] * p).z());
+  }
+  return lowest;
+}
+
+bool HasSole(const RobotTree& tree, int body) {
+  return std::any_of(tree.links.begin(), tree.links.end(),
+                     [&](const Link& link) { return link.body == body && NamedSole(link.name); });
+}
+
+/// Takes the toes from the legs. The foot is then the body in front of the toe's joint: one that
+/// touches the floor as the toe does, or that has a link named as a sole.
+void LeaveOutToes(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics,
+                  Limbs& found) {
+  constexpr double kSameFloor = 0.005;  // of the longest limb: 6 mm of one of 1.25 m
+  const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  for (Limb& limb : found.limbs) {
+    while (limb.leg) {
+      const int foot = tree.joints[Size(limb.tip_body) - 1].parent_body;
+      const int link = BodyLink(tree, foot);
+      if (ChainCoordinates(tree, 0, link).size() < LeastLegJoints(false)) break;
+      const double higher =
+          LowestPoint(shapes, poses, foot) - LowestPoint(shapes, poses, limb.tip_body);
+      const bool named = HasSole(tree, foot) && !HasSole(tree, limb.tip_body);
+      if (!named && !(std::abs(higher) < kSameFloor * LongestBranch(tree))) break;
+      found.tool[Size(limb.tip_body)] = true;
+      limb.tip_body = foot;
+      limb.joints = JointsToBody(tree, foot);
+      limb.tip_link = TipLink(tree, semantics, limb);
+    }
+  }
+}
+
 }  // namespace
 
 Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics) {
@@ -272,6 +332,7 @@ Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantic
   }
   PairMirrors(tree, found.limbs);
   FindFeet(tree, shapes, found.limbs);
+  LeaveOutToes(tree, shapes, semantics, found);
   std::set<std::string> used;
   for (Limb& limb : found.limbs) {
     std::string name = NameLimb(tree, found.limbs, limb);

@@ -80,10 +80,32 @@ TEST(Limbs, ArmsThatEndLowestAreNoLegs) {
   EXPECT_EQ(CountLegs(UpperBody(-0.1, 0.5, "leg_arm_")), 2) << "a rocker arm of a leg";
 }
 
+// The draft gets a root link that looks ahead.
+TEST(Limbs, OfARobotThatLooksAlongYAreFound) {
+  std::string urdf = UpperBody(-0.1, 0.5);
+  urdf.insert(urdf.rfind("</robot>"),
+              "<link name='cad'/><joint name='cad_fixed' type='fixed'><parent link='cad'/><child "
+              "link='base'/><origin rpy='0 0 1.5708'/></joint>");
+  EXPECT_EQ(CountLegs(urdf), 2);
+}
+
 TEST(Limbs, GoOnBehindAJointThatFollows) {
   EXPECT_EQ(EndOfNeck(RobotWithNeck(true)), "head");
   // Like a finger, the limb ends with the joint that follows: no link behind it moves by itself.
   EXPECT_EQ(EndOfNeck(RobotWithNeck(false)), "lower_neck");
+}
+
+// A forearm that ends in a gripper, without a wrist: its fingers are far from the elbow.
+TEST(Limbs, FingersOnALongForearmAreNoLimbs) {
+  std::string urdf = UpperBody(0.35, 0.1);
+  for (const std::string side : {"l", "r"}) {
+    const std::string a = side + "_dito_a", b = side + "_dito_b", forearm = side + "_3";
+    urdf.insert(urdf.rfind("</robot>"),
+                JointText(forearm, a, "", "0 0.02 -0.45") +
+                    JointText(forearm, b, "<mimic joint='" + a + "_joint' multiplier='-1'/>",
+                              "0 -0.02 -0.45"));
+  }
+  EXPECT_EQ(DraftProject(urdf, "r.urdf", {}).limbs.limbs.size(), 3u) << "two arms and a head";
 }
 
 }  // namespace

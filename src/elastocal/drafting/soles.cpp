@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/drafting/limb_names.hpp"
+#include "elastocal/files/xml_edit.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/motion/leg_chain.hpp"
 #include "elastocal/robot/legs.hpp"
@@ -25,12 +26,6 @@ struct FootPoints {
   std::vector<Eigen::Vector3d> root;  ///< points of the shapes in the root link's frame, m
   double floor = std::numeric_limits<double>::infinity();
 };
-
-/// Whether the name is that of a sole.
-bool NamedSole(const std::string& name) {
-  const std::vector<std::string> words = WordsOf(name);
-  return std::find(words.begin(), words.end(), "sole") != words.end();
-}
 
 /// A link of the foot's body that lies flat at this height: one that is named as a sole, else the
 /// lowest; nothing if there is none.
@@ -54,15 +49,6 @@ std::optional<int> FlatLink(const RobotTree& tree, int body, const std::vector<T
     best = static_cast<int>(i);
   }
   return best;
-}
-
-/// A text for an attribute in XML.
-std::string XmlEscaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
-  }
-  return escaped;
 }
 
 /// A name that no link has.
@@ -259,7 +245,7 @@ std::string AddSoleLinks(const std::string& urdf, const RobotTree& tree,
         "    <child link=\"{0}\"/>\n"
         "    <origin xyz=\"{2:.6f} {3:.6f} {4:.6f}\" rpy=\"{5:.9f} {6:.9f} {7:.9f}\"/>\n"
         "  </joint>\n",
-        sole.link, XmlEscaped(tree.links[Size(sole.parent_link)].name), p.x(), p.y(), p.z(),
+        sole.link, EscapedXml(tree.links[Size(sole.parent_link)].name), p.x(), p.y(), p.z(),
         rpy.x(), rpy.y(), rpy.z());
   }
   const std::size_t end = urdf.rfind("</robot");

@@ -90,5 +90,40 @@ TEST(Soles, OfLinksInTheFloorTheOneCalledSoleIsTheSole) {
   EXPECT_EQ(soles[0].link, "left_sole_link");
 }
 
+/// The embedded humanoid with a toe on each foot: a box, 70 mm long, as low as the foot.
+std::string WithToes(std::string urdf, bool shapes) {
+  const std::string shape =
+      "<collision><origin xyz='0.035 0 0.015'/><geometry><box size='0.07 0.13 0.03'/></geometry>"
+      "</collision>";
+  for (const std::string side : {"left", "right"}) {
+    const std::string name = "dedo_" + side;
+    urdf.insert(urdf.rfind("</robot>"),
+                "<link name='" + name +
+                    "'><inertial><mass value='0.2'/><inertia ixx='1e-4' ixy='0' ixz='0' "
+                    "iyy='1e-4' iyz='0' izz='1e-4'/></inertial>" +
+                    (shapes ? shape : "") + "</link><joint name='" + name +
+                    "' type='revolute'><parent link='" + side + "_sole_link'/><child link='" +
+                    name +
+                    "'/><origin xyz='0.105 0 0'/><axis xyz='0 -1 0'/><limit lower='-0.1' "
+                    "upper='0.9' effort='20' velocity='5'/></joint>");
+    if (!shapes) RemoveShapes("leg_" + side + "_6_link", urdf);
+  }
+  return urdf;
+}
+
+// A toe ends the tree behind the foot, but nothing stands on toes alone.
+TEST(Soles, AreThoseOfTheFeetWithoutToes) {
+  const std::string plain = ReadFile(SourceFile("models/talos/talos.urdf"));
+  const std::vector<DraftedSole> expected = SolesOf(plain);
+  for (const bool shapes : {true, false}) {  // without its meshes, names tell
+    const std::vector<DraftedSole> soles = SolesOf(WithToes(plain, shapes));
+    ASSERT_EQ(soles.size(), 2u);
+    for (const std::size_t i : {0u, 1u}) {
+      EXPECT_EQ(soles[i].link, expected[i].link);
+      EXPECT_TRUE(!shapes || soles[i].upper == expected[i].upper);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -92,7 +92,8 @@ void CheckLimits(const Project& project, CompensatedMotion& result) {
     refuse("faster than a joint's limit", result.velocity, 100.0, "%",
            "plan it slower, or its limb less stretched there");
   if (result.has_clearance && result.clearance.value < 0.0) {
-    refuse("parts touch", result.clearance, 1e3, "mm", "plan more room there");
+    refuse("parts touch", result.clearance, 1e3, "mm",
+           "plan more room there (collision.margin_mm of the project)");
   }
 }
 

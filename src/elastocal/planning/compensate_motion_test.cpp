@@ -111,7 +111,9 @@ TEST(CompensateMotion, ARefusalNamesTheJointThatStopsAtItsLimit) {
   EXPECT_EQ(result.broken[0].find("stopped by a joint's limit: leg_left_4_joint ("), 0U)
       << result.broken[0];
   EXPECT_NE(result.broken[0].find("(a degree counts 5.2 mm; 1 of 1 samples"), std::string::npos);
-  EXPECT_NE(result.broken[0].find("plan the motion further from this limit"), std::string::npos);
+  EXPECT_NE(result.broken[0].find("plan the motion further from this limit (design and plan with "
+                                  "--limit-margin-deg"),
+            std::string::npos);
 }
 
 // A hand is mounted eleven degrees off on an arm of four joints, which can only correct its

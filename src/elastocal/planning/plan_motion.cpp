@@ -246,12 +246,16 @@ std::vector<std::string> ValidationChains(const Project& project) {
   return names;
 }
 
+void CheckTries(const Project& project, const MotionTrialOptions& options) {
+  if (options.robots == 0 || !project.soles.empty()) return;
+  throw InputError(project.file.string() +
+                   ": no section 'standing' with the soles that --robots could stand on: the root "
+                   "link is held still, and nothing can fall; plan without --robots");
+}
+
 std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& motion,
                                    const MotionTrialOptions& options, const Progress& progress) {
-  if (options.robots > 0 && project.soles.empty()) {
-    throw InputError(project.file.string() +
-                     ": no section 'standing' with the soles that robots could stand on");
-  }
+  CheckTries(project, options);
   const DescribedRobot described = DescribeRobot(project);
   const TrueRobot nominal =
       NominalRobot(described.tree, described.markers, FindLegs(described.tree, described.chains),

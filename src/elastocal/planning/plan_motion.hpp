@@ -111,8 +111,12 @@ struct MotionTrial {
 void CountToOwnLimits(const Project& own, const Project& narrow, const MotionPlanOptions& options,
                       MotionPlan& plan);
 
-/// Plays a motion on free-standing robots with errors (MuJoCo). Progress counts robots. Throws
-/// InputError for a project without soles.
+/// Throws InputError where robots are to play a motion of a project without soles. Call it before
+/// the motion is planned, which takes long.
+void CheckTries(const Project& project, const MotionTrialOptions& options);
+
+/// Plays a motion on free-standing robots with errors (MuJoCo). Progress counts robots. Throws as
+/// CheckTries does.
 std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& motion,
                                    const MotionTrialOptions& options,
                                    const Progress& progress = {});

@@ -77,12 +77,13 @@ std::vector<std::string> StoppedJoints::Describe(int samples) const {
                     what, fmt::join(worst.joints, ", "), worst.time_s, 1e3 * worst.left_m,
                     DegreeAsMillimetres(worst.arm_m), worst.samples, samples, advice));
   };
-  describe(
-      limit_, "stopped by a joint's limit",
-      "plan the motion further from this limit, or widen it in the URDF if the robot can go on");
+  describe(limit_, "stopped by a joint's limit",
+           "plan the motion further from this limit (design and plan with --limit-margin-deg, or "
+           "design.range_deg of the project), or widen it in the URDF if the robot can go on");
   describe(correction_,
            "stopped by the limit of a correction (its size, or its change from the last sample)",
-           "plan the limb less stretched and further from limits there");
+           "plan the limb less stretched and further from limits there (design.range_deg of the "
+           "project keeps an elbow or a knee bent)");
   return sentences;
 }
 

@@ -53,6 +53,19 @@ TEST(PhysicalInertia, WarningsNameTheLink) {
   EXPECT_NE(InertiaWarnings(tree)[0].find("wider than the robot"), std::string::npos);
 }
 
+// Two joints of a shoulder whose axes meet: the upper arm, which the second one moves, has all the
+// mass.
+TEST(PhysicalInertia, ALinkBetweenTwoJointsNeedsNoMass) {
+  RobotTree tree = MakeRoot();
+  const int cross = AddJoint(tree, "pitch", 0, Offset(0, 0, 1), {0, 1, 0});
+  Link& arm = tree.links[static_cast<std::size_t>(
+      AddJoint(tree, "roll", cross, Offset(0, 0, 0), {1, 0, 0}))];
+  EXPECT_EQ(InertiaWarnings(tree).size(), 2U);
+  arm.mass = 1.0;
+  arm.inertia = 0.1 * Eigen::Matrix3d::Identity();
+  EXPECT_TRUE(InertiaWarnings(tree).empty());
+}
+
 TEST(PhysicalInertia, WarnsOfMassesInGrams) {
   RobotTree tree = MakeRoot();
   Link& link =
