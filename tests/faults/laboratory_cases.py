@@ -210,12 +210,12 @@ def joint_faults(lab, draw):
                lambda r, j=joint, g=gain: r.change_column(every, j, g))
     for joint, trial in several(5):
         off = draw.choice([-1, 1]) * draw.choice([1, 2, 5])
-        yield ("offset", f"{joint}: {off} deg off in {trial}", (joint, "off by"),
+        yield ("offset", f"{joint}: {off} deg off in {trial}", (joint, "off by", trial),
                lambda r, j=joint, t=trial, o=off: r.change_column(
                    [t], j, lambda: lambda q, share: q + o * DEGREE))
     for joint, trial in several(5):
         off, begin = draw.choice([-1, 1]) * draw.choice([2, 5]), draw.uniform(0.3, 0.7)
-        yield ("offset", f"{joint}: {off} deg off from {begin:.2f} of {trial} on", (joint, "off by"),
+        yield ("offset", f"{joint}: {off} deg off from {begin:.2f} of {trial} on", (joint, "off by", trial),
                lambda r, j=joint, t=trial, o=off, b=begin: r.change_column(
                    [t], j, lambda: lambda q, share: q + (o * DEGREE if share > b else 0)))
     for joint, trial in several(6):

@@ -13,6 +13,7 @@ void HideClosedChains(const RobotTree& tree, const std::vector<Marker>& markers,
     const auto marker = std::find_if(markers.begin(), markers.end(), [&](const Marker& known) {
       return known.name == recording.marker_names[m];
     });
+    if (marker == markers.end()) continue;
     for (int i = 0; i < recording.posture_count(); ++i) {
       const std::vector<int>& support = recording.trials[recording.trial[i]].support;
       if (support.size() < 2 || std::none_of(support.begin(), support.end(), [&](int link) {

@@ -24,5 +24,15 @@ TEST(ClosedChains, HideTheFeetThatStandTogetherAndNothingElse) {
   }
 }
 
+TEST(ClosedChains, LeaveMarkersThatTheProjectDoesNotKnow) {
+  const StandingBiped robot;
+  Recording recording =
+      robot.Empty({{.name = "both", .chains = {}, .support = {robot.left, robot.right}}}, 1);
+  recording.marker_names.back() = "PROP";
+  HideClosedChains(robot.biped.tree, robot.model.markers, recording);
+  EXPECT_TRUE(Seen(recording, 0, recording.marker_count() - 1));
+  EXPECT_FALSE(Seen(recording, 0, recording.marker_count() - 2));
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -291,7 +291,7 @@ MarkedRobot MakeMarkedRobot(const Project& project) {
   MarkedRobot robot;
   robot.tree = project.tree;
   robot.markers = project.markers;
-  for (const MarkerCluster& cluster : project.clusters) {
+  for (const MarkerCluster& cluster : RigidClusters(project)) {
     robot.clusters.push_back({cluster.name, cluster.markers});
   }
   robot.torque_sensors = project.torque_sensors;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/fault_or_causes.hpp"
 #include "elastocal/mistakes/find_contradictions.hpp"
 #include "elastocal/mistakes/general_fault.hpp"
 #include "elastocal/mistakes/impossible_gears.hpp"
@@ -36,66 +37,12 @@ namespace {
 constexpr double kLeftByOdd = 0.5;  // share of the error of a fit, without them
 // Share of the error of a fit that treats wrong gains as gears.
 constexpr double kLeftBesideGears = 0.8;
-
-struct FoundFault : GeneralFault {
-  /// From FindTrialOffset: other trials do not tell which trial is wrong.
-  bool of_one_trial = false;
-};
-
-/// Several apparent knocks may be one fault that displaces all these clusters, which is therefore
-/// also searched for without the knocks.
-std::optional<FoundFault> FindGeneralFault(const Project& project,
-                                           std::optional<std::uint64_t> seed,
-                                           Measurements as_recorded, const RecordedModel& robot,
-                                           const Recording& recording,
-                                           const CalibrationResult& result) {
-  const CalibrationOptions& options = project.calibration;
-  GeneralFault general{{},      robot.model,           robot.base, recording, result.kind,
-                       options, as_recorded.validation};
-  std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, options);
-  std::optional<RecordingFault> hidden;
-  if (robot.knocks.empty()) {
-    if (faults.empty()) {
-      hidden = FindTrialOffset(result, robot.base, recording, options, general.held_out);
-    }
-  } else {
-    RecordedModel plain = MakeRecordedModel(project, seed, as_recorded, KnockSearch::kNone);
-    const CalibrationResult without =
-        Calibrate(plain.model, as_recorded.calibration, plain.base, result.kind, options);
-    std::vector<RecordingFault> found =
-        FindRecordingFaults(without, as_recorded.calibration, options);
-    if (found.empty() && faults.empty()) {
-      hidden =
-          FindTrialOffset(without, plain.base, as_recorded.calibration, options, general.held_out);
-    }
-    if (!found.empty() || hidden) {
-      faults = std::move(found);
-      general.model = std::move(plain.model);
-      general.base = std::move(plain.base);
-      general.recording = std::move(as_recorded.calibration);
-    }
-  }
-  if (hidden) faults = {*hidden};
-  if (faults.empty()) return std::nullopt;
-  general.fault = faults.front();
-  return FoundFault{general, hidden.has_value()};
-}
+constexpr double kAsWellByFewer = 1.1;  // ratio to the error of a fit with more parameters
 
 bool IsFarOff(const std::vector<RecordingFault>& gears) {
   constexpr double kFarOffGear = 0.1;  // beyond this, a linear estimate is invalid
   return std::any_of(gears.begin(), gears.end(),
                      [](const RecordingFault& gear) { return std::abs(gear.size) > kFarOffGear; });
-}
-
-/// Finds the fault of a robot without the causes that it seemed to have.
-std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
-                                            const Measurements& as_recorded, ModelKind kind) {
-  project.elasticity.extra.clear();
-  Measurements plain = as_recorded;
-  const RecordedModel robot = MakeRecordedModel(project, seed, plain, KnockSearch::kNone);
-  const CalibrationResult fit =
-      Calibrate(robot.model, plain.calibration, robot.base, kind, project.calibration);
-  return FindGeneralFault(project, seed, as_recorded, robot, plain.calibration, fit);
 }
 
 /// Names that correct a wrong scale: `scale=1.00200` for all trials, else `scale:TRIAL=1.00200` for
@@ -265,9 +212,29 @@ class FaultsInTurn {
   /// Finds faults of joints and others that displace several clusters; the search is made once.
   void Look() {
     if (few_) return;
-    // Causes absorb a part of a joint's fault.
-    found_ =
-        gears_.empty() ? General() : FindWithoutCauses(project_, seed_, as_recorded_, fit().kind);
+    if (!gears_.empty() || MayHideFault(project_, recording_)) {
+      Explain(FindWithoutCauses(project_, seed_, as_recorded_));
+      if (!gears_.empty() || IsFaultInstead()) return;
+    }
+    Explain(General());
+  }
+
+  /// Whether few faults explain the recording instead of what the data have chosen: far better, or
+  /// as well with fewer parameters.
+  bool IsFaultInstead() const {
+    const bool like_play = std::ranges::any_of(few_->faults, [](const RecordingFault& fault) {
+      return fault.kind == FaultKind::kUnfinished || fault.kind == FaultKind::kJointLag;
+    });
+    if (!few_->complete || like_play) return false;
+    if (few_->left < kLeftBesideGears * left_) return true;
+    const auto& bending = project_.elasticity.bending;
+    const bool bends = bending && !bending->empty() && project_.elasticity.extra.empty();
+    if (bends && few_->left < kAsWellByFewer * left_) return true;
+    return ReplaceCauses(few_->faults, project_, seed_, as_recorded_, fit(), left_);
+  }
+
+  void Explain(std::optional<FoundFault> found) {
+    found_ = std::move(found);
     few_ = found_ ? ExplainFault(*found_, project_) : FaultsInWords();
   }
 
@@ -320,7 +287,9 @@ class FaultsInTurn {
   }
 
   std::vector<std::string> OfGears() const {
-    const bool better = few_->complete && few_->left < kLeftBesideGears * left_;
+    // Other causes share an impossible gear's gain with it, so that few faults are more exact.
+    const bool better = few_->complete &&
+                        (few_->left < kLeftBesideGears * left_ || AreGainsOf(few_->faults, gears_));
     if (found_ && (better || IsFarOff(gears_))) return {few_->text};
     std::vector<std::string> faults;
     for (const RecordingFault& gear : gears_) {

@@ -19,9 +19,11 @@
 #include "elastocal/mistakes/placed_offset.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
+#include "elastocal/mistakes/tried_correction.hpp"
 #include "elastocal/recorded/find_base.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/robot/move_motors.hpp"
+#include "elastocal/screening/measured_faults.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 
 namespace elastocal {
@@ -32,8 +34,6 @@ constexpr int kMostFits = 8;
 constexpr int kSweeps = 2;  // rounds in which each size is estimated beside the others
 // Largest change of a gain in one step, beyond which a derivative tells little.
 constexpr double kLargestStep = 0.3;
-// The largest error that estimated errors of a robot leave, m and as a share of its size.
-constexpr double kMostLeftByFaults = 0.02, kMostLeftOfSize = 0.008;
 constexpr double kFewestSds = 6.0;      // of a fault beside the others
 constexpr int kSamePlace = 2;           // postures
 constexpr std::size_t kFewHomed = 2;    // more joints than this differ in another robot
@@ -159,8 +159,7 @@ class FaultExplanation {
         return;
       }
       if (found.empty()) {
-        const double most = kMostLeftOfSize * RobotSize(project_.tree);
-        complete_ = left_ < std::min(kMostLeftByFaults, most);
+        complete_ = left_ < MostLeft(project_.tree);
         return;
       }
       next = found.front();

@@ -51,19 +51,19 @@ std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
 }
 
 std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result) {
-  constexpr double kLargestGear = 0.005, kCertain = 8.0;
+  constexpr double kCertain = 3.0;  // standard deviations beyond the largest gear error
   std::vector<RecordingFault> faults;
   for (int i = 0; i < result.model.parameter_count(); ++i) {
     const Parameter& parameter = result.model.parameters[Size(i)];
     if (parameter.correction < 0) continue;
     const Correction& correction = result.model.elasticity.corrections[Size(parameter.correction)];
+    if (correction.shape != CorrectionShape::kGear) continue;
+    const Joint& joint = result.model.tree.joints[Size(correction.joint)];
     const double ratio = result.delta[i];
-    if (correction.shape != CorrectionShape::kGear || std::abs(ratio) < kLargestGear ||
-        std::abs(ratio) < kCertain * result.sd[i]) {
-      continue;
-    }
+    const double largest = LeastSize(FaultKind::kJointGain, joint.type == JointType::kPrismatic);
+    if (std::abs(ratio) < largest + kCertain * result.sd[i]) continue;
     RecordingFault fault;
-    fault.coordinate = result.model.tree.joints[Size(correction.joint)].coordinate;
+    fault.coordinate = joint.coordinate;
     fault.size = 1.0 / (1.0 + ratio) - 1.0;
     fault.sd = result.sd[i];
     faults.push_back(fault);

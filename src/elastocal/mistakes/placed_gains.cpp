@@ -8,6 +8,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/thinned_motions.hpp"
 #include "elastocal/screening/knocks.hpp"
+#include "elastocal/screening/measured_faults.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 
 namespace elastocal {

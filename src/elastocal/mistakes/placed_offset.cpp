@@ -9,6 +9,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/trial_offset.hpp"
+#include "elastocal/screening/measured_faults.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 
 namespace elastocal {

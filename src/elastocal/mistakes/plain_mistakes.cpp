@@ -21,6 +21,7 @@
 #include "elastocal/mistakes/other_followers.hpp"
 #include "elastocal/mistakes/other_zeros.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/tried_correction.hpp"
 #include "elastocal/mistakes/whole_limbs.hpp"
 #include "elastocal/recorded/find_base.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
@@ -33,9 +34,8 @@
 namespace elastocal {
 namespace {
 
-constexpr int kFewestPlaced = 8;  // with fewer, anything can be explained
-// The largest error that estimated errors of a robot leave, m and as a share of its size.
-constexpr double kMostLeft = 0.02, kMostOfSize = 0.01;
+constexpr int kFewestPlaced = 8;    // with fewer, anything can be explained
+constexpr double kMostLeft = 0.02;  // m: largest error that estimated errors of a robot leave
 // Largest share that is left with a mistake corrected, for the placed nominal robot:
 constexpr double kLeftOfMisfit = 0.7;
 constexpr double kLeftByOneOfSeveral = 0.9;
@@ -121,7 +121,7 @@ class PlainSearch {
       : project_(project),
         given_{"", "", ModelOf(project, recording), recording},
         misfit_(MisfitOf(given_.model, recording)),
-        least_(std::min(kMostLeft, kMostOfSize * RobotSize(project.tree))) {}
+        least_(MostLeft(project.tree)) {}
 
   /// Returns the mistakes, each found beside those before it; empty: none.
   std::vector<Alternative> Run() {

@@ -208,6 +208,27 @@ Project ParseProject(const std::string& text, const std::filesystem::path& file)
   return project;
 }
 
+std::vector<MarkerCluster> RigidClusters(const Project& project) {
+  std::vector<char> in_cluster(project.markers.size(), 0);
+  for (const MarkerCluster& cluster : project.clusters) {
+    for (const int m : cluster.markers) in_cluster[static_cast<std::size_t>(m)] = 1;
+  }
+  std::vector<MarkerCluster> clusters;
+  for (std::size_t m = 0; m < project.markers.size(); ++m) {
+    if (in_cluster[m] != 0) continue;
+    const int link = project.markers[m].link;
+    auto of_link = std::ranges::find(clusters, link, &MarkerCluster::link);
+    if (of_link == clusters.end()) {
+      const std::string& name = project.tree.links[static_cast<std::size_t>(link)].name;
+      of_link = clusters.insert(clusters.end(), {name, link, {}});
+    }
+    of_link->markers.push_back(static_cast<int>(m));
+  }
+  std::erase_if(clusters, [](const MarkerCluster& one) { return one.markers.size() < 2; });
+  clusters.insert(clusters.begin(), project.clusters.begin(), project.clusters.end());
+  return clusters;
+}
+
 std::vector<std::string> ChainMarkers(const Project& project, const Chain& chain) {
   const RobotTree& tree = project.tree;
   std::vector<int> joints = JointsToBody(tree, tree.links[chain.tip_link].body);

@@ -162,6 +162,10 @@ int FindChain(const Project& project, const std::string& name);
 /// Index of a cluster of markers. Throws InputError for an unknown one.
 int FindCluster(const Project& project, const std::string& name);
 
+/// The project's clusters, and those that single markers on the same link form: they keep their
+/// distances as well. These have the name of the link.
+std::vector<MarkerCluster> RigidClusters(const Project& project);
+
 /// Markers carried by the links of a chain, beyond its `from` link up to and including its tip.
 std::vector<std::string> ChainMarkers(const Project& project, const Chain& chain);
 

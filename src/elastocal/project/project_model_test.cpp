@@ -88,6 +88,28 @@ TEST(ProjectModel, AJointThatCountsTurnsIsMovedAboutItsPositionOfRest) {
   EXPECT_DOUBLE_EQ(narrow.motion.upper[0], 270.0 * M_PI / 180.0);
 }
 
+TEST(ProjectModel, SingleMarkersOfOneLinkAreACluster) {
+  const ScratchFolder folder;
+  folder.Write("r.urdf",
+               "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='revolute'>"
+               "<parent link='a'/><child link='b'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' "
+               "effort='1' velocity='1'/></joint></robot>");
+  const Project project = ReadProject(folder.Write("p.yaml", R"(
+robot: {urdf: r.urdf}
+markers:
+  clusters: [{name: C, link: b, positions_mm: [[100, 0, 0], [0, 90, 0], [0, 0, 80]]}]
+  single:
+    - {name: M, link: b, position_mm: [50, 60, 70]}
+    - {name: N, link: a, position_mm: [50, 60, 70]}
+    - {name: O, link: b, position_mm: [150, 60, 70]}
+)"));
+  const std::vector<MarkerCluster> clusters = RigidClusters(project);
+  ASSERT_EQ(clusters.size(), 2u);
+  EXPECT_EQ(clusters[0].name, "C");
+  EXPECT_EQ(clusters[1].name, "b");
+  EXPECT_EQ(clusters[1].markers, (std::vector<int>{3, 5}));
+}
+
 TEST(ProjectModel, JointsOfARecordingBendWhereTheyTwist) {
   const auto bending = [](const std::string& more, const std::vector<Trial>& trials) {
     const ErrorModel model = MakeProjectModel(ParseArm(more), trials);

@@ -121,7 +121,7 @@ std::string DescribeKnock(const Knock& knock, const Recording& recording) {
 std::vector<LabelCluster> SeenClusters(const Project& project, const Recording& recording) {
   const std::vector<std::string>& names = recording.marker_names;
   std::vector<LabelCluster> clusters;
-  for (const MarkerCluster& cluster : project.clusters) {
+  for (const MarkerCluster& cluster : RigidClusters(project)) {
     LabelCluster seen{cluster.name, {}};
     for (int m : cluster.markers) {
       const auto found = std::find(names.begin(), names.end(), project.markers[m].name);

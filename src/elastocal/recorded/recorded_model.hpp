@@ -20,7 +20,8 @@ struct RecordedModel {
   std::vector<ContradictoryTorque> contradictory = {};  ///< torque sensors that are not used
 };
 
-/// The project's clusters with the markers that the recording has, as indices of its markers.
+/// The clusters of the project (RigidClusters) with the markers that the recording has, as indices
+/// of its markers.
 std::vector<LabelCluster> SeenClusters(const Project& project, const Recording& recording);
 
 enum class KnockSearch { kAll, kNone };

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <numeric>
 
 #include "elastocal/calibration/marker_places.hpp"
 #include "elastocal/math/dense.hpp"
@@ -172,6 +174,44 @@ std::optional<CommonScale> ScaleBeside(const KnownLengths& lengths,
   return scale;
 }
 
+/// Estimates the scale where one of the lengths may have any error (-1: none). Nothing where the
+/// lengths do not determine a scale.
+std::optional<CommonScale> ScaleWithFree(Eigen::Index free, const KnownLengths& lengths,
+                                         const CalibrationResult& result) {
+  constexpr double kAnyError = 1e4;  // variance, in units of the prior's
+  const Eigen::Index count = lengths.pattern.size();
+  Eigen::MatrixXd own = Eigen::MatrixXd::Identity(count, count) +
+                        ShiftsOfNormals(result.model, lengths.parameters, result.prior_sd);
+  if (free >= 0) own(free, free) += kAnyError;
+  return ScaleBeside(lengths, InverseOfPositive(own),
+                     1.0 / result.prior_scale[PriorGroup::kLengths]);
+}
+
+/// Whether a clean recording hardly ever has such a scale.
+bool IsOfNoRobot(const CommonScale& scale) {
+  return std::abs(scale.size) > kLeastScale &&
+         StudentTwoSidedTail(scale.size / scale.sd, scale.degrees_of_freedom) < kFalseAlarm;
+}
+
+/// Whether a single length is off, not all: if it may have any error, the others tell plainly
+/// another scale, which a robot may have. The three largest errors are tried.
+bool IsOfOneLength(const CommonScale& scale, const KnownLengths& lengths,
+                   const CalibrationResult& result) {
+  constexpr double kPlainly = 2.0;  // standard deviations
+  constexpr std::size_t kMostTried = 3;
+  std::vector<Eigen::Index> order(lengths.parameters.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, std::greater(), [&](Eigen::Index i) {
+    return std::abs(result.delta[lengths.parameters[Size(i)]]);
+  });
+  order.resize(std::min(order.size(), kMostTried));
+  return std::ranges::any_of(order, [&](Eigen::Index i) {
+    const auto others = ScaleWithFree(i, lengths, result);
+    return others && !IsOfNoRobot(*others) &&
+           std::abs(others->size - scale.size) > kPlainly * others->sd;
+  });
+}
+
 }  // namespace
 
 std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
@@ -179,11 +219,11 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
   if (KnowsRobot(options.earlier)) return std::nullopt;
   const std::optional<KnownLengths> lengths = LengthsOf(result);
   if (!lengths) return std::nullopt;
-  const Eigen::Index count = lengths->pattern.size();
-  const Eigen::MatrixXd own_weight =
-      InverseOfPositive(Eigen::MatrixXd::Identity(count, count) +
-                        ShiftsOfNormals(result.model, lengths->parameters, result.prior_sd));
-  return ScaleBeside(*lengths, own_weight, 1.0 / result.prior_scale[PriorGroup::kLengths]);
+  std::optional<CommonScale> scale = ScaleWithFree(-1, *lengths, result);
+  if (scale && IsDoubtful(*scale)) {
+    scale->of_one_length = IsOfOneLength(*scale, *lengths, result);
+  }
+  return scale;
 }
 
 std::pair<double, double> CompatibleScales(const CommonScale& scale) {
@@ -193,7 +233,7 @@ std::pair<double, double> CompatibleScales(const CommonScale& scale) {
 
 bool IsDoubtful(const CommonScale& scale) {
   constexpr double kOneInFifty = 0.02;
-  return std::abs(scale.size) > kLeastScale &&
+  return std::abs(scale.size) > kLeastScale && !scale.of_one_length &&
          StudentTwoSidedTail(scale.size / scale.sd, scale.degrees_of_freedom) < kOneInFifty;
 }
 
@@ -213,10 +253,7 @@ std::string DescribeDoubt(const CommonScale& scale) {
 std::optional<CommonScale> FindWrongScale(const CalibrationResult& result,
                                           const CalibrationOptions& options) {
   const auto scale = EstimateCommonScale(result, options);
-  const bool wrong =
-      scale && std::abs(scale->size) > kLeastScale &&
-      StudentTwoSidedTail(scale->size / scale->sd, scale->degrees_of_freedom) < kFalseAlarm;
-  return wrong ? scale : std::nullopt;
+  return scale && !scale->of_one_length && IsOfNoRobot(*scale) ? scale : std::nullopt;
 }
 
 std::string Describe(const CommonScale& scale) {

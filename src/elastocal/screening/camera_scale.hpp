@@ -15,6 +15,8 @@ struct CommonScale {
   double sd = 0.0;
   /// Degrees of freedom of `sd`: number of lengths that determine how far single lengths err.
   double degrees_of_freedom = 1.0;
+  /// A single length, which the robot description has wrongly, makes most of it.
+  bool of_one_length = false;
 };
 
 /// Estimates the factor that the errors of all lengths of a robot have in common, beside the single
@@ -27,7 +29,7 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
 
 /// The common factor, if no robot has it: it differs from 1 by more than 0.3 %, and by as many
 /// standard deviations as in one clean recording of a thousand by Student's t (3.5 for a humanoid,
-/// 4.6 for an arm of seven joints).
+/// 4.6 for an arm of seven joints). Not where it is of one length.
 std::optional<CommonScale> FindWrongScale(const CalibrationResult& result,
                                           const CalibrationOptions& options);
 

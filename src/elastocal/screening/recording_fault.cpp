@@ -36,6 +36,16 @@ bool IsReached(const Recording& recording, int posture) {
   return recording.trial[posture - 1] == trial && !recording.trials[trial].of_motion();
 }
 
+std::string DescribeShift(const RecordingFault& fault, const Recording& recording) {
+  char sentence[200];
+  std::snprintf(sentence, sizeof sentence,
+                "the frame of the markers lies %.2f +- %.2f mm elsewhere along %c from %s ",
+                1e3 * fault.size, 1e3 * fault.sd, "xyz"[fault.axis],
+                DescribePosture(recording, fault.posture).c_str());
+  const std::string end = fault.end > 0 ? "to " + DescribePosture(recording, fault.end - 1) : "on";
+  return sentence + end + " (the tracker or the base was pushed?)";
+}
+
 }  // namespace
 
 double LeastSize(FaultKind kind, bool slides) {
@@ -45,6 +55,7 @@ double LeastSize(FaultKind kind, bool slides) {
   if (kind == FaultKind::kJointGain) return slides ? 0.002 : 0.005;
   if (kind == FaultKind::kUnfinished) return 0.003;
   if (kind == FaultKind::kCameraScale || IsInCameraSpace({kind})) return 0.0015;
+  if (kind == FaultKind::kFrameShift) return 1e-3;
   return slides ? 1e-3 : 0.25 * M_PI / 180.0;
 }
 
@@ -53,11 +64,13 @@ double LargestSize(FaultKind kind, bool slides) {
   if (kind == FaultKind::kJointGain || kind == FaultKind::kUnfinished) return 1.0;
   if (IsInCameraSpace({kind})) return 0.1;
   if (kind == FaultKind::kCameraScale) return 0.5;
+  if (kind == FaultKind::kFrameShift) return 1.0;
   return slides ? 1.0 : M_PI;
 }
 
-bool IsCertain(const RecordingFault& fault) {
+bool IsCertain(const RecordingFault& fault, Certainty certainty) {
   constexpr double kLeastSds = 6.0, kLeastOfGiven = 4.0;
+  if (certainty == Certainty::kSuspected) return std::abs(fault.size) > kLeastOfGiven * fault.sd;
   const bool like_play = fault.kind == FaultKind::kJointLag || fault.kind == FaultKind::kUnfinished;
   const double left = like_play ? 1.0 : std::sqrt(std::max(0.0, 1.0 - fault.share));
   return std::abs(fault.size) > std::max(kLeastOfGiven, kLeastSds * left) * fault.sd;
@@ -120,6 +133,12 @@ Eigen::MatrixXd CameraDisplacements(const RecordingFault& fault, const Recording
   const Eigen::MatrixXd& markers = recording.markers;
   if (fault.kind == FaultKind::kCameraScale) return markers;
   Eigen::MatrixXd displacements = Eigen::MatrixXd::Zero(markers.rows(), markers.cols());
+  if (fault.kind == FaultKind::kFrameShift) {
+    for (int m = 0; m < recording.marker_count(); ++m) {
+      displacements.col(3 * m + fault.axis).setOnes();
+    }
+    return displacements;
+  }
   if (fault.kind != FaultKind::kCameraBend) {
     const int by = fault.kind == FaultKind::kCameraShear ? fault.by_axis : fault.axis;
     for (int m = 0; m < recording.marker_count(); ++m) {
@@ -165,7 +184,11 @@ Recording WithoutFault(const Recording& recording, const RecordingFault& fault) 
   }
   for (int i = 0; i < recording.posture_count(); ++i) {
     const double factor = FactorOf(fault, recording, i);
-    if (fault.kind == FaultKind::kCameraScale) {
+    if (fault.kind == FaultKind::kFrameShift) {
+      for (int m = 0; m < recording.marker_count(); ++m) {
+        without.markers(i, 3 * m + fault.axis) -= fault.size * factor;
+      }
+    } else if (fault.kind == FaultKind::kCameraScale) {
       without.markers.row(i) /= 1.0 + fault.size * factor;
     } else if (fault.kind == FaultKind::kJointGain) {
       if (fault.trial < 0 || recording.trial[i] == fault.trial) {
@@ -220,6 +243,7 @@ std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
     }
     return sentence;
   }
+  if (fault.kind == FaultKind::kFrameShift) return DescribeShift(fault, recording);
   const bool joint = fault.kind != FaultKind::kCameraScale;
   const LoggedPosition of = joint ? LoggedPositionOf(tree, fault.linkage, fault.coordinate)
                                   : LoggedPosition{"camera positions"};

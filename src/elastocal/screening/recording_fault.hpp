@@ -23,6 +23,8 @@ enum class FaultKind {
   /// Coordinates along one axis are off by a multiple of those along another, in all postures.
   kCameraShear,
   kCameraBend,  ///< scale of the cameras changes with the square of the distance from the middle
+  /// The frame of a table's markers is displaced along one of its axes from some posture on.
+  kFrameShift,
 };
 
 /// A fault that explains much of the residuals of a fit.
@@ -31,8 +33,8 @@ struct RecordingFault {
   int coordinate = -1;  ///< coordinate in the robot tree (of joints that are logged together)
   int trial = -1;       ///< the only trial with the fault; -1: all
   int posture = 0;      ///< the first posture with the fault
-  /// Gain minus 1; offset, or drift over all postures, rad or m; time, s; scale minus 1; share of
-  /// the move; shear; scale at the outermost marker minus that in the middle.
+  /// Gain minus 1; offset, or drift over all postures, rad or m; displacement, m; time, s; scale
+  /// minus 1; share of the move; shear; scale at the outermost marker minus that in the middle.
   double size = 0.0;
   double sd = 0.0;     ///< standard deviation of `size`, by the scatter of the postures
   double share = 0.0;  ///< share of the sum of squared residuals that it explains
@@ -55,10 +57,15 @@ double LeastSize(FaultKind kind, bool slides);
 /// rounding.
 double LargestSize(FaultKind kind, bool slides);
 
+enum class Certainty {
+  kCertain,
+  kSuspected,  ///< a fit has to prove it: four standard deviations by the noise of the fit
+};
+
 /// Whether a fault exceeds chance: six standard deviations by the noise that is left without it,
 /// and four by that of the fit, which contains the fault. Lags and unfinished moves, which a robot
 /// with play or hysteresis also shows: six by that of the fit.
-bool IsCertain(const RecordingFault& fault);
+bool IsCertain(const RecordingFault& fault, Certainty certainty = Certainty::kCertain);
 
 /// Moves of all joints from the held posture before, in the same trial or table: postures x
 /// coordinates; 0 in motions.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <set>
 
 #include "elastocal/calibration/fit.hpp"
@@ -21,7 +22,8 @@ constexpr double kStep = 1e-6;  // step of difference quotients: rad, m, relativ
 constexpr double kLeastExplained = 0.06;
 constexpr double kLeastOfChains = 0.5;  // share of the residuals of the chains with the fault
 constexpr int kLeastSide = 3;           // postures before and after the beginning of a fault
-constexpr int kSplits = 12;  // postures of the recording at which an offset of a joint may begin
+// Postures of the recording at which an offset of a joint may begin, and a passing one.
+constexpr int kSplits = 48, kSplitsOfStretch = 12;
 // Postures of a trial at which an offset to its end may begin.
 constexpr int kTrialSplits = 6;
 
@@ -31,8 +33,10 @@ class FaultSearch {
  public:
   /// `only` are the faults to be measured; none: all are tried.
   FaultSearch(const CalibrationResult& result, const Recording& recording,
-              const CalibrationOptions& options, const std::vector<RecordingFault>* only = nullptr)
-      : result_(result),
+              const CalibrationOptions& options, Certainty certainty,
+              const std::vector<RecordingFault>* only = nullptr)
+      : certainty_(certainty),
+        result_(result),
         recording_(recording),
         options_(options),
         selection_(SelectAll(result.model, recording)) {
@@ -133,19 +137,17 @@ class FaultSearch {
 
   /// Sum of squares of the chains (CalibrationResult::group) in whose postures it has an effect.
   double SquaresOfChains(const Blocks& derivative, const Eigen::VectorXd& factor) const {
+    std::map<int, double> squares;
     std::set<int> chains;
     for (std::size_t b = 0; b < posture_.size(); ++b) {
       const int i = posture_[b];
-      if (i < 0 || factor[i] == 0.0 || derivative[b].isZero(0.0)) continue;
-      chains.insert(result_.group[i]);
+      if (i < 0) continue;
+      squares[result_.group[i]] += at_[b].squaredNorm();
+      if (factor[i] != 0.0 && !derivative[b].isZero(0.0)) chains.insert(result_.group[i]);
     }
-    double squares = 0.0;
-    for (std::size_t b = 0; b < posture_.size(); ++b) {
-      if (posture_[b] >= 0 && chains.contains(result_.group[posture_[b]])) {
-        squares += at_[b].squaredNorm();
-      }
-    }
-    return squares;
+    double sum = 0.0;
+    for (const int chain : chains) sum += squares[chain];
+    return sum;
   }
 
   /// Measures candidates by the residuals of the fit.
@@ -177,7 +179,7 @@ class FaultSearch {
       const RecordingFault& fault = measured[k];
       const bool matters = std::abs(fault.size) > LeastSize(fault.kind, slides) &&
                            std::abs(fault.size) < LargestSize(fault.kind, slides);
-      if (!IsCertain(fault) || !matters) continue;
+      if (!IsCertain(fault, certainty_) || !matters) continue;
       const bool explains =
           fault.share > kLeastExplained ||
           fault.share * squares_ > kLeastOfChains * SquaresOfChains(derivative, trials[k].factor);
@@ -215,19 +217,18 @@ class FaultSearch {
     const bool slides = joint.type == JointType::kPrismatic;
     const RecordingFault fault{.coordinate = coordinate};
     const Blocks derivative = DerivativeOf(fault);
-    RecordingFault unfinished = fault;
-    unfinished.kind = FaultKind::kUnfinished;
-    std::vector<Trial> of_moves = {MakeTrial(fault), MakeTrial(unfinished)};
+    std::vector<Trial> of_moves = {
+        MakeTrial(fault), MakeTrial({.kind = FaultKind::kUnfinished, .coordinate = coordinate})};
     for (const int trial : TrialsThatMove(recording_, coordinate)) {
       of_moves.push_back(MakeTrial({.coordinate = coordinate, .trial = trial}));
     }
     Try(equations, covariance, derivative, of_moves, slides);
     if (HasMotion(recording_)) {
-      RecordingFault lag = fault;
-      lag.kind = FaultKind::kJointLag;
+      const RecordingFault lag{.kind = FaultKind::kJointLag, .coordinate = coordinate};
       Try(equations, covariance, derivative, {MakeTrial(lag)}, slides);
     }
-    TryOffsets(equations, covariance, derivative, fault, slides);
+    TryOffsets(equations, covariance, derivative,
+               {.kind = FaultKind::kJointOffset, .coordinate = coordinate}, slides);
   }
 
   void TryMotor(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
@@ -244,21 +245,19 @@ class FaultSearch {
         changed.q(i, joints) += kStep * closure->by_motors.col(motor.rod).transpose();
       }
     }
-    RecordingFault fault;
-    fault.coordinate = motor.rod;
-    fault.linkage = motor.linkage;
+    const RecordingFault fault{
+        .kind = FaultKind::kJointOffset, .coordinate = motor.rod, .linkage = motor.linkage};
     TryOffsets(equations, covariance, Derivative(changed), fault,
                linkage.rods[static_cast<std::size_t>(motor.rod)].actuator);
   }
 
-  /// Tries offsets of a joint or motor, by the derivative of its position.
+  /// Tries offsets of a joint, a motor or the markers' frame, by the derivative of its position.
   void TryOffsets(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
                   const Blocks& derivative, const RecordingFault& of, bool slides) {
     std::vector<Trial> trials;
-    const auto add = [&](int trial, int posture, int end = 0,
-                         FaultKind kind = FaultKind::kJointOffset) {
+    const auto add = [&](int trial, int posture, int end = 0, bool drifts = false) {
       RecordingFault fault = of;
-      fault.kind = kind;
+      if (drifts) fault.kind = FaultKind::kJointDrift;
       fault.trial = trial;
       fault.posture = posture;
       fault.end = end;
@@ -276,9 +275,8 @@ class FaultSearch {
       add(-1, split);
     };
     const auto best_since = [&](std::size_t before) {
-      return *std::max_element(
-          found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end(),
-          [](const RecordingFault& a, const RecordingFault& b) { return a.share < b.share; });
+      return *std::ranges::max_element(found_.begin() + static_cast<std::ptrdiff_t>(before),
+                                       found_.end(), {}, &RecordingFault::share);
     };
     // Tries evenly spread beginnings, then all between the best and its neighbours.
     const auto try_splits = [&](int begin, int end, int step, const auto& add_at) {
@@ -295,11 +293,12 @@ class FaultSearch {
     };
     try_splits(0, count, stride, add_split);
     if (recording_.trials.empty()) {
-      TryStretches(count, stride, add, try_all, best_since);
+      TryStretches(count, add, try_all, best_since);
     }
     const auto add_drift = [&](int trial, int begin, int end) {
       const bool long_enough = end == 0 || end - begin >= 2 * kLeastSide;
-      if (of.linkage < 0 && long_enough) add(trial, begin, end, FaultKind::kJointDrift);
+      const bool of_joint = of.coordinate >= 0 && of.linkage < 0;
+      if (of_joint && long_enough) add(trial, begin, end, true);
     };
     // For a joint that markers show in one trial, a drift over all trials would be as likely.
     const bool several = recording_.trials.size() > 1;
@@ -323,8 +322,9 @@ class FaultSearch {
 
   /// An offset from one posture to another: a joint that slipped and was corrected.
   template <typename Add, typename TryAll, typename BestSince>
-  void TryStretches(int count, int stride, const Add& add, const TryAll& try_all,
+  void TryStretches(int count, const Add& add, const TryAll& try_all,
                     const BestSince& best_since) const {
+    const int stride = std::max(1, count / kSplitsOfStretch);
     const auto add_stretch = [&](int begin, int end) {
       const bool long_enough = end - begin >= kLeastSide;
       if (begin >= kLeastSide && end <= count - kLeastSide && long_enough) add(-1, begin, end);
@@ -348,8 +348,11 @@ class FaultSearch {
 
   /// Tries faults of the cameras' space, and the scale of one trial (not of all: see the header).
   void TryScale(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
+    const bool held_table = recording_.trials.empty() && !recording_.free_root;
     std::vector<RecordingFault> of_cameras = {{.kind = FaultKind::kCameraBend}};
     for (int axis = 0; axis < 3; ++axis) {
+      const RecordingFault shift{.kind = FaultKind::kFrameShift, .axis = axis};
+      if (held_table) TryOffsets(equations, covariance, DerivativeOf(shift), shift, true);
       of_cameras.push_back({.kind = FaultKind::kCameraAxis, .axis = axis});
       of_cameras.push_back(
           {.kind = FaultKind::kCameraShear, .axis = axis, .by_axis = (axis + 1) % 3});
@@ -365,6 +368,7 @@ class FaultSearch {
     Try(equations, covariance, DerivativeOf({.kind = FaultKind::kCameraScale}), trials, false);
   }
 
+  Certainty certainty_;
   const CalibrationResult& result_;
   const Recording& recording_;
   const CalibrationOptions& options_;
@@ -380,20 +384,16 @@ class FaultSearch {
 
 std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
                                                 const Recording& recording,
-                                                const CalibrationOptions& options) {
-  return FaultSearch(result, recording, options).found();
-}
-
-RecordingFault MeasureFault(const RecordingFault& fault, const CalibrationResult& result,
-                            const Recording& recording, const CalibrationOptions& options) {
-  return MeasureFaults({fault}, result, recording, options).front();
+                                                const CalibrationOptions& options,
+                                                Certainty certainty) {
+  return FaultSearch(result, recording, options, certainty).found();
 }
 
 std::vector<RecordingFault> MeasureFaults(const std::vector<RecordingFault>& faults,
                                           const CalibrationResult& result,
                                           const Recording& recording,
                                           const CalibrationOptions& options) {
-  return FaultSearch(result, recording, options, &faults).found();
+  return FaultSearch(result, recording, options, Certainty::kCertain, &faults).found();
 }
 
 }  // namespace elastocal

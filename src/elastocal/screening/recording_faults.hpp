@@ -14,12 +14,15 @@ namespace elastocal {
 ///
 /// - the gain of each joint, also in one of several trials that move it (not of joints that rods
 ///   move, whose levers are errors of the robot);
-/// - an offset of each joint, or motor of rods: from a posture on (twelve postures, then all near
-///   the best), in one trial, from a posture to the end of its trial (six of each, then all near
+/// - an offset of each joint, or motor of rods: from a posture on (48 postures, then all near the
+///   best), in one trial, from a posture to the end of its trial (six of each, then all near
 ///   the best), and in a table from one posture to another;
 /// - in a table, a steady drift of each joint; in motions, a lag;
 /// - the scale of the cameras along one of their axes, a shear of two axes, and a scale that
 ///   changes from the middle outwards;
+/// - in a table whose root link is held: a displacement of the markers' frame along one of its
+/// axes,
+///   from a posture on, or from one posture to another;
 /// - the scale of the cameras in one of several trials (a common scale of all trials looks like a
 ///   robot with wrong lengths).
 ///
@@ -29,11 +32,7 @@ namespace elastocal {
 /// reaches 4 %), or half of those of the chains with the fault.
 std::vector<RecordingFault> FindRecordingFaults(const CalibrationResult& result,
                                                 const Recording& recording,
-                                                const CalibrationOptions& options);
-
-/// The same fault, measured by the residuals of a fit to another recording: its size and standard
-/// deviation, without any limits.
-RecordingFault MeasureFault(const RecordingFault& fault, const CalibrationResult& result,
-                            const Recording& recording, const CalibrationOptions& options);
+                                                const CalibrationOptions& options,
+                                                Certainty certainty = Certainty::kCertain);
 
 }  // namespace elastocal

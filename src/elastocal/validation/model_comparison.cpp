@@ -60,18 +60,19 @@ std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit) {
   if (unit == FoldUnit::kTrial) return recording.trial;
   if (unit == FoldUnit::kSession) return SessionOfPosture(recording);
   const int postures = recording.posture_count();
-  // Nearly equal postures are found among neighbours in the order of the sum of their joint
-  // positions.
+  if (postures == 0) return {};
+  // Nearly equal postures are neighbours in the order of the joint that moves furthest.
   std::vector<int> order(postures), units(postures);
   std::iota(order.begin(), order.end(), 0);
-  const Eigen::VectorXd sums = recording.q.rowwise().sum();
+  Eigen::Index furthest = 0;
+  (recording.q.colwise().maxCoeff() - recording.q.colwise().minCoeff()).maxCoeff(&furthest);
+  const Eigen::VectorXd positions = recording.q.col(furthest);
   std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return std::pair(sums[a], a) < std::pair(sums[b], b); });
+            [&](int a, int b) { return std::pair(positions[a], a) < std::pair(positions[b], b); });
   std::iota(units.begin(), units.end(), 0);
-  const double window = kSamePosture * static_cast<double>(recording.q.cols());
   for (int k = 0; k < postures; ++k) {
-    for (int l = k + 1; l < postures && sums[order[l]] - sums[order[k]] <= window; ++l) {
-      if (l - k > 200) break;
+    for (int l = k + 1; l < postures && positions[order[l]] - positions[order[k]] <= kSamePosture;
+         ++l) {
       const auto apart = (recording.q.row(order[k]) - recording.q.row(order[l])).cwiseAbs();
       if (apart.maxCoeff() > kSamePosture) continue;
       Unite(units[order[k]], units[order[l]], units);

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/mistakes/fault_or_causes.hpp"
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "elastocal/calibration/calibrate.hpp"
+#include "elastocal/calibration/marker_places.hpp"
+#include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/trial_offset.hpp"
+#include "elastocal/recorded/choose_elasticity.hpp"
+#include "elastocal/robot/coordinates.hpp"
+#include "elastocal/screening/recording_faults.hpp"
+
+namespace elastocal {
+namespace {
+
+std::vector<std::string> AllJoints() { return {"*"}; }
+
+/// Whether any of these causes is estimated five times as large as a robot's typically are.
+bool AreOfNoRobot(const std::set<std::string>& causes, const CalibrationResult& result) {
+  constexpr double kOfTypical = 5.0;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[Size(i)];
+    if (parameter.correction < 0) continue;
+    const Correction& of = result.model.elasticity.corrections[Size(parameter.correction)];
+    const bool large = std::abs(result.delta[i]) > kOfTypical * parameter.typical;
+    if (large && causes.contains(of.cause)) return true;
+  }
+  return false;
+}
+
+/// Faults that are certain or, without any, the suspected one that explains most, if a fit to the
+/// recording without it leaves less than half of the error.
+std::vector<RecordingFault> ProvedFaults(const CalibrationResult& result,
+                                         const BaseParameters& base, const Recording& recording,
+                                         const CalibrationOptions& options) {
+  constexpr double kLeftOfProved = 0.5;
+  std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, options);
+  if (!faults.empty()) return faults;
+  faults = FindRecordingFaults(result, recording, options, Certainty::kSuspected);
+  if (faults.empty() || faults.front().linkage >= 0) return {};
+  faults.resize(1);
+  const Recording without = WithoutFault(recording, faults.front());
+  const double left =
+      MarkerError(Calibrate(result.model, without, base, result.kind, options), without, options);
+  if (left < kLeftOfProved * MarkerError(result, recording, options)) return faults;
+  return {};
+}
+
+}  // namespace
+
+std::optional<FoundFault> FindGeneralFault(const Project& project,
+                                           std::optional<std::uint64_t> seed,
+                                           Measurements as_recorded, const RecordedModel& robot,
+                                           const Recording& recording,
+                                           const CalibrationResult& result) {
+  const CalibrationOptions& options = project.calibration;
+  GeneralFault general{{},      robot.model,           robot.base, recording, result.kind,
+                       options, as_recorded.validation};
+  std::vector<RecordingFault> faults = ProvedFaults(result, robot.base, recording, options);
+  std::optional<RecordingFault> hidden;
+  if (robot.knocks.empty()) {
+    if (faults.empty()) {
+      hidden = FindTrialOffset(result, robot.base, recording, options, general.held_out);
+    }
+  } else {
+    RecordedModel plain = MakeRecordedModel(project, seed, as_recorded, KnockSearch::kNone);
+    const CalibrationResult without =
+        Calibrate(plain.model, as_recorded.calibration, plain.base, result.kind, options);
+    std::vector<RecordingFault> found =
+        FindRecordingFaults(without, as_recorded.calibration, options);
+    if (found.empty() && faults.empty()) {
+      hidden =
+          FindTrialOffset(without, plain.base, as_recorded.calibration, options, general.held_out);
+    }
+    if (!found.empty() || hidden) {
+      faults = std::move(found);
+      general.model = std::move(plain.model);
+      general.base = std::move(plain.base);
+      general.recording = std::move(as_recorded.calibration);
+    }
+  }
+  if (hidden) faults = {*hidden};
+  if (faults.empty()) return std::nullopt;
+  general.fault = faults.front();
+  return FoundFault{general, hidden.has_value()};
+}
+
+bool AreGainsOf(const std::vector<RecordingFault>& faults,
+                const std::vector<RecordingFault>& gears) {
+  std::set<int> of_faults, of_gears;
+  for (const RecordingFault& gear : gears) of_gears.insert(gear.coordinate);
+  for (const RecordingFault& fault : faults) {
+    if (fault.kind != FaultKind::kJointGain || fault.trial >= 0) return false;
+    of_faults.insert(fault.coordinate);
+  }
+  return of_faults == of_gears;
+}
+
+bool MayHideFault(const Project& project, const Recording& recording) {
+  if (KnowsRobot(project.calibration.earlier)) return false;
+  const ElasticityChoice& own = project.elasticity;
+  if (!own.extra.empty()) return project.calibration.extra.automatic;
+  if (!recording.trials.empty() || !HasMasses(project.tree)) return false;
+  return own.torsion != AllJoints() || (own.bending && !own.bending->empty());
+}
+
+std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
+                                            const Measurements& as_recorded) {
+  project.elasticity.extra.clear();
+  if (as_recorded.calibration.trials.empty() && HasMasses(project.tree)) {
+    project.elasticity.torsion = AllJoints();
+    project.elasticity.bending.reset();
+  }
+  try {
+    Measurements plain = as_recorded;
+    const RecordedModel robot = MakeRecordedModel(project, seed, plain, KnockSearch::kNone);
+    const CalibrationResult fit = Calibrate(robot.model, plain.calibration, robot.base,
+                                            ModelKinds(robot.model).back(), project.calibration);
+    return FindGeneralFault(project, seed, as_recorded, robot, plain.calibration, fit);
+  } catch (const InputError&) {  // fewer equations than the unknowns of a robot with springs
+    return std::nullopt;
+  }
+}
+
+bool ReplaceCauses(const std::vector<RecordingFault>& faults, Project project,
+                   std::optional<std::uint64_t> seed, const Measurements& as_recorded,
+                   const CalibrationResult& with, double left) {
+  constexpr double kAsWellAsCauses = 1.1;
+  Measurements undone = as_recorded;
+  std::set<std::string> removed;
+  for (const RecordingFault& fault : faults) {
+    const bool of_joint =
+        fault.kind == FaultKind::kJointGain || fault.kind == FaultKind::kJointOffset;
+    if (!of_joint || fault.coordinate < 0 || fault.linkage >= 0) return false;
+    const std::string& joint = JointOfCoordinate(project.tree, fault.coordinate).name;
+    for (const std::string& cause : project.elasticity.extra) {
+      if (cause.starts_with(joint + ".") || cause.ends_with("_" + joint)) removed.insert(cause);
+    }
+    undone.calibration = WithoutFault(undone.calibration, fault);
+  }
+  if (!AreOfNoRobot(removed, with)) return false;
+  std::erase_if(project.elasticity.extra,
+                [&](const std::string& cause) { return removed.contains(cause); });
+  const RecordedModel robot = MakeRecordedModel(project, seed, undone, KnockSearch::kNone);
+  const CalibrationResult fit = Calibrate(robot.model, undone.calibration, robot.base,
+                                          ModelKinds(robot.model).back(), project.calibration);
+  return MarkerError(fit, undone.calibration, project.calibration) < kAsWellAsCauses * left;
+}
+
+}  // namespace elastocal

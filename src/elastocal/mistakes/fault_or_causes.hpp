@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "elastocal/mistakes/general_fault.hpp"
+#include "elastocal/project/project.hpp"
+#include "elastocal/recorded/recorded_model.hpp"
+
+namespace elastocal {
+
+struct FoundFault : GeneralFault {
+  /// From FindTrialOffset: other trials do not tell which trial is wrong.
+  bool of_one_trial = false;
+};
+
+/// Finds the fault that explains most of what the fit `result` leaves. Several apparent knocks may
+/// be one fault that displaces all these clusters, which is therefore also searched for without the
+/// knocks. `as_recorded` is the recording before markers were split at knocks.
+std::optional<FoundFault> FindGeneralFault(const Project& project,
+                                           std::optional<std::uint64_t> seed,
+                                           Measurements as_recorded, const RecordedModel& robot,
+                                           const Recording& recording,
+                                           const CalibrationResult& result);
+
+/// Whether data that have a fault may have chosen what hides it: causes or, in a table, which
+/// joints give way and how.
+bool MayHideFault(const Project& project, const Recording& recording);
+
+/// Finds the fault of a robot without the causes that it seemed to have. In a table all its joints
+/// are elastic about their axes.
+std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
+                                            const Measurements& as_recorded);
+
+/// Whether faults of joints explain a recording as well as the causes that these joints have in the
+/// fit `with`: an eccentricity and an ellipticity together look like a gain. Causes of this size
+/// (five times the typical one) are in no robot. With the faults undone and without these causes, a
+/// fit leaves at most a tenth more than `left`, the error of `with`, m.
+bool ReplaceCauses(const std::vector<RecordingFault>& faults, Project project,
+                   std::optional<std::uint64_t> seed, const Measurements& as_recorded,
+                   const CalibrationResult& with, double left);
+
+/// Whether the faults are gains, in all trials, of the joints of these gears and of no others.
+bool AreGainsOf(const std::vector<RecordingFault>& faults,
+                const std::vector<RecordingFault>& gears);
+
+}  // namespace elastocal

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// Faults of a laboratory in recordings of real robots, whose errors no model describes completely.
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/pipeline/calibrate_experiment.hpp"
+#include "elastocal/project/project.hpp"
+#include "elastocal/tables/read_file.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+using Row = std::vector<double>;
+
+/// A posture table of numbers.
+struct NumberTable {
+  std::string header;
+  std::vector<Row> rows;
+
+  explicit NumberTable(const std::filesystem::path& file) {
+    std::istringstream text(ReadFile(file));
+    std::getline(text, header);
+    for (std::string line; std::getline(text, line);) {
+      Row row;
+      std::istringstream cells(line);
+      for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+      rows.push_back(row);
+    }
+  }
+
+  std::size_t Column(const std::string& name) const {
+    std::istringstream cells(header);
+    std::size_t at = 0;
+    for (std::string cell; std::getline(cells, cell, ',') && cell != name;) ++at;
+    return at;
+  }
+
+  std::string Text() const {
+    std::ostringstream text;
+    text.precision(12);
+    text << header << '\n';
+    for (const Row& row : rows) {
+      for (std::size_t i = 0; i < row.size(); ++i) text << (i == 0 ? "" : ",") << row[i];
+      text << '\n';
+    }
+    return text.str();
+  }
+};
+
+CalibrationRun CalibrateTable(const std::string& project, const NumberTable& table,
+                              const std::string& file = "project.yaml") {
+  const ScratchFolder scratch;
+  return CalibrateExperiment(ParseProject(project, SourceFile(file)),
+                             {scratch.Write("table.csv", table.Text())}, {.folds = 0});
+}
+
+std::string FirstFault(const CalibrationRun& run) {
+  return run.faults.empty() ? "" : run.faults.front();
+}
+
+bool Says(const std::string& said, const std::string& words) {
+  return said.find(words) != std::string::npos;
+}
+
+class MeasuredTiago : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(training_)) GTEST_SKIP() << training_ << " is not there";
+  }
+
+  static std::string ProjectOf(const std::filesystem::path& urdf, const std::string& more) {
+    return "robot: {urdf: " + urdf.string() + "}\n" + kHand + more;
+  }
+  CalibrationRun Run(const std::function<void(NumberTable&)>& change,
+                     const std::string& more = kPlain) const {
+    NumberTable table(training_);
+    change(table);
+    return CalibrateTable(ProjectOf(urdf_, more), table);
+  }
+
+  static constexpr const char* kHand = R"(
+chains: [{name: arm, tip: arm_7_link}]
+markers:
+  single:
+    - {name: M1, link: arm_7_link, position_mm: [0, 70, 130]}
+    - {name: M2, link: arm_7_link, position_mm: [0, -90, 145]}
+    - {name: M3, link: arm_7_link, position_mm: [0, -60, 235]}
+    - {name: M4, link: arm_7_link, position_mm: [0, 50, 235]}
+recording:
+  ignore: [shipped_row, t_start_robot, t_end_robot, marker_std_mm]
+  columns: {markers: {M1: [x1, y1, z1], M2: [x2, y2, z2], M3: [x3, y3, z3], M4: [x4, y4, z4]}}
+)";
+  /// Nothing is chosen, which takes seconds.
+  static constexpr const char* kPlain =
+      "elasticity: {torsion: ['*'], bending: []}\ncalibration: {extra: none}\n";
+  const std::filesystem::path training_ = SharedFile("data/tiago_mocap/training.csv");
+  const std::filesystem::path urdf_ = SharedFile("robots/tiago/tiago_arm.urdf");
+};
+
+TEST_F(MeasuredTiago, IsSoundAsItIs) {
+  const CalibrationRun run = Run([](NumberTable&) {});
+  EXPECT_TRUE(run.faults.empty()) << FirstFault(run);
+}
+
+// Single markers on one link keep their distances as those of a cluster do.
+TEST_F(MeasuredTiago, LabelsOfSingleMarkersExchangedInHalfOfTheRowsAreNamed) {
+  const CalibrationRun run = Run([](NumberTable& table) {
+    for (std::size_t i = 0; i < 18; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) std::swap(table.rows[i][3 + k], table.rows[i][6 + k]);
+    }
+  });
+  EXPECT_TRUE(Says(FirstFault(run), "M2 and M3")) << FirstFault(run);
+}
+
+TEST_F(MeasuredTiago, ASingleMarkerThatWasGluedOnAgainIsTakenAsTwo) {
+  const CalibrationRun run = Run([](NumberTable& table) {
+    for (std::size_t i = 18; i < table.rows.size(); ++i) {
+      Row& row = table.rows[i];  // M2 moves by 10 mm away from M3
+      const Eigen::Vector3d from(row[6], row[7], row[8]), at(row[3], row[4], row[5]);
+      const Eigen::Vector3d moved = at + 0.01 * (at - from).normalized();
+      for (std::size_t k = 0; k < 3; ++k) row[3 + k] = moved[static_cast<Eigen::Index>(k)];
+    }
+  });
+  ASSERT_EQ(run.knocks.size(), 1u);
+  EXPECT_EQ(run.knocks.front().markers, std::vector<int>{1});
+  EXPECT_EQ(run.knocks.front().posture, 18);
+  EXPECT_NEAR(run.knocks.front().distance, 0.01, 1e-3);
+}
+
+TEST_F(MeasuredTiago, APushedTrackerIsNamed) {
+  const CalibrationRun run = Run([](NumberTable& table) {
+    for (std::size_t i = 18; i < table.rows.size(); ++i) {
+      for (std::size_t m = 0; m < 4; ++m) table.rows[i][3 * m] += 0.01;
+    }
+  });
+  EXPECT_TRUE(Says(FirstFault(run), "mm elsewhere along x from")) << FirstFault(run);
+  EXPECT_TRUE(Says(FirstFault(run), "pushed")) << FirstFault(run);
+}
+
+// The data choose a gear and an eccentricity, which together are almost such a gain.
+TEST_F(MeasuredTiago, AGainThatCausesExplainIsNamed) {
+  const CalibrationRun run = Run(
+      [](NumberTable& table) {
+        for (Row& row : table.rows) row[table.Column("arm_3_joint")] *= 1.05;
+      },
+      "elasticity: {torsion: ['*'], bending: []}\n");
+  ASSERT_FALSE(run.extra.empty());
+  EXPECT_TRUE(Says(FirstFault(run), "arm_3_joint: its positions are 1.0")) << FirstFault(run);
+}
+
+// One link that is 20 mm off in the robot description is calibrated; the cameras have no wrong
+// scale.
+TEST_F(MeasuredTiago, ALinkThatTheDescriptionHasWronglyIsNoScale) {
+  std::string urdf = ReadFile(urdf_);
+  const std::size_t joint = urdf.find("<joint name=\"arm_4_joint\"");
+  const std::size_t origin = urdf.find("xyz=\"", joint) + 5;
+  const std::size_t end = urdf.find('"', origin);
+  std::istringstream read(urdf.substr(origin, end - origin));
+  double x = 0.0, y = 0.0, z = 0.0;
+  read >> x >> y >> z;
+  ASSERT_LT(z, -0.2);
+  std::ostringstream written;
+  written << x << ' ' << y << ' ' << z + 0.02;
+  urdf.replace(origin, end - origin, written.str());
+  const ScratchFolder scratch;
+  const CalibrationRun run =
+      CalibrateTable(ProjectOf(scratch.Write("wrong.urdf", urdf), kPlain), NumberTable(training_));
+  EXPECT_TRUE(run.faults.empty()) << FirstFault(run);
+  ASSERT_TRUE(run.common_scale);
+  EXPECT_TRUE(run.common_scale->of_one_length);
+}
+
+// Sine, cosine and ellipticity of one joint and the coupling of the next one explain it as well.
+TEST(MeasuredTalos, AGainThatAnEccentricityExplainsIsNamed) {
+  const auto recording = SharedFile("data/talos_left_arm_mocap/talos_left_arm_02_10_contact.csv");
+  if (!std::filesystem::exists(recording)) GTEST_SKIP() << recording << " is not there";
+  NumberTable table(recording);
+  for (Row& row : table.rows) row[table.Column("arm_left_2_joint")] *= 1.05;
+  const std::string project = "examples/talos_left_arm/project.yaml";
+  const CalibrationRun run =
+      CalibrateTable(ReadFile(SourceFile(project)) + "elasticity: {torsion: ['*'], bending: []}\n",
+                     table, project);
+  EXPECT_TRUE(Says(FirstFault(run), "arm_left_2_joint: its positions are 1.05")) << FirstFault(run);
+}
+
+}  // namespace
+}  // namespace elastocal
