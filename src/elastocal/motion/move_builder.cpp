@@ -24,7 +24,8 @@ Eigen::VectorXd ShareOfWay(Eigen::Index samples, Eigen::Index before, Eigen::Ind
   return progress;
 }
 
-/// Pose of the root link while the joints are at `q` on the way from one posture to another.
+/// About where the root link is while the joints are at `q` on the way from one posture to another:
+/// it moves in time, and a detour takes longer on one side.
 Transform RootOnTheWay(const PlacedPosture& from, const PlacedPosture& to,
                        const std::vector<int>& moving, const Eigen::VectorXd& q) {
   double along = 0.0, whole = 0.0;
@@ -32,7 +33,8 @@ Transform RootOnTheWay(const PlacedPosture& from, const PlacedPosture& to,
     along += (q[c] - from.q[c]) * (to.q[c] - from.q[c]);
     whole += (to.q[c] - from.q[c]) * (to.q[c] - from.q[c]);
   }
-  return RootBetween(from.T_world_root, to.T_world_root, whole > 0.0 ? along / whole : 0.0);
+  const double share = whole > 0.0 ? std::clamp(along / whole, 0.0, 1.0) : 0.0;
+  return RootBetween(from.T_world_root, to.T_world_root, share);
 }
 
 constexpr double kEnds = 0.5;  // s, hold at either end, in which the root link starts and stops

@@ -114,11 +114,13 @@ void SeeBars(const std::vector<ReferenceLength>& references,
   }
 }
 
-/// Positions of the markers on the links of the true robot, measured with noise.
-/// Names of the markers of some clusters.
+/// Names of the markers of some clusters; of all markers where no cluster is named.
 std::set<std::string> MarkersOfClusters(const Project& project,
                                         const std::vector<std::string>& clusters) {
   std::set<std::string> markers;
+  if (clusters.empty()) {
+    for (const Marker& marker : project.markers) markers.insert(marker.name);
+  }
   for (const MarkerCluster& cluster : project.clusters) {
     const auto found = std::find(clusters.begin(), clusters.end(), cluster.name);
     if (found == clusters.end()) continue;
@@ -127,8 +129,8 @@ std::set<std::string> MarkersOfClusters(const Project& project,
   return markers;
 }
 
-/// Measures the places of some markers, of all if none is named. What is drawn for a marker does
-/// not depend on which others are measured.
+/// Positions of some markers on the links of the true robot, measured with noise. What is drawn for
+/// a marker does not depend on which others are measured.
 std::vector<MarkerMeasurement> MeasurePlaces(const std::vector<Marker>& markers,
                                              const std::set<std::string>& measured, double sd,
                                              std::uint64_t seed) {
@@ -136,8 +138,7 @@ std::vector<MarkerMeasurement> MeasurePlaces(const std::vector<Marker>& markers,
   std::vector<MarkerMeasurement> places;
   for (const Marker& marker : markers) {
     const Eigen::Vector3d place = marker.p_link_marker + random.NormalVector(3, sd);
-    if (measured.empty() || measured.count(marker.name) > 0)
-      places.push_back({marker.name, place, sd});
+    if (measured.contains(marker.name)) places.push_back({marker.name, place, sd});
   }
   return places;
 }

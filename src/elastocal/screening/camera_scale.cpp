@@ -220,7 +220,7 @@ std::optional<CommonScale> EstimateCommonScale(const CalibrationResult& result,
   const std::optional<KnownLengths> lengths = LengthsOf(result);
   if (!lengths) return std::nullopt;
   std::optional<CommonScale> scale = ScaleWithFree(-1, *lengths, result);
-  if (scale && IsDoubtful(*scale)) {
+  if (scale && IsOfNoRobot(*scale)) {
     scale->of_one_length = IsOfOneLength(*scale, *lengths, result);
   }
   return scale;
