@@ -53,23 +53,36 @@ bool MovesByItselfBeyond(const RobotTree& tree, int body) {
   });
 }
 
-/// Reach of the branches of a body from their middle, m: a forearm is long, its fingers are not. Of
-/// a single branch, its reach from the body.
-double ReachOfFingers(const RobotTree& tree, int body, const std::vector<int>& branches) {
-  if (branches.size() < 2) return Reach(tree, body);
-  std::vector<Eigen::Vector3d> places;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const int branch : branches) {
+/// Largest number of joints beyond a body, up to the end of a branch.
+int JointsBeyond(const RobotTree& tree, int body) {
+  int most = 0;
+  for (const int next : Branches(tree, body)) most = std::max(most, 1 + JointsBeyond(tree, next));
+  return most;
+}
+
+/// Whether some branches of a body are fingers at the far end of a long link, as of a forearm
+/// without a wrist: they have joints alike, or one follows another, and the largest distance
+/// between two of them plus their reach is at most `most`, m.
+bool AreFingersFarOut(const RobotTree& tree, const std::vector<int>& branches, double most) {
+  if (branches.size() < 2) return false;
+  constexpr int kAlike = 1;  // a thumb often has one joint more or less than a finger
+  int least_joints = std::numeric_limits<int>::max(), most_joints = 0;
+  bool follows = false;
+  double spread = 0.0, reach = 0.0;
+  const auto place = [&](int branch) -> Eigen::Vector3d {
     const Joint& joint = tree.joints[Size(branch - 1)];
-    places.push_back(tree.links[Size(joint.parent_link)].T_body_link *
-                     joint.T_parent_child.translation());
-    middle += places.back() / static_cast<double>(branches.size());
+    return tree.links[Size(joint.parent_link)].T_body_link * joint.T_parent_child.translation();
+  };
+  for (const int branch : branches) {
+    least_joints = std::min(least_joints, JointsBeyond(tree, branch));
+    most_joints = std::max(most_joints, JointsBeyond(tree, branch));
+    follows = follows || tree.joints[Size(branch - 1)].mimic;
+    reach = std::max(reach, Reach(tree, branch));
+    for (const int other : branches) {
+      spread = std::max(spread, (place(branch) - place(other)).norm());
+    }
   }
-  double longest = 0.0;
-  for (std::size_t i = 0; i < branches.size(); ++i) {
-    longest = std::max(longest, (places[i] - middle).norm() + Reach(tree, branches[i]));
-  }
-  return longest;
+  return (follows || most_joints - least_joints <= kAlike) && spread + reach <= most;
 }
 
 /// Marks bodies that belong to a gripper or to fingers.
@@ -82,7 +95,8 @@ std::vector<bool> FindTools(const RobotTree& tree) {
   for (int body = 1; body < tree.body_count(); ++body) {
     const std::vector<int> branches = Branches(tree, body);
     if (JointsToBody(tree, body).size() < kLeastJoints || branches.empty()) continue;
-    if (ReachOfFingers(tree, body, branches) > kShort * longest) continue;
+    const double most = kShort * longest;
+    if (Reach(tree, body) > most && !AreFingersFarOut(tree, branches, most)) continue;
     const bool mimics = std::any_of(branches.begin(), branches.end(), [&](int b) {
       return tree.joints[Size(b - 1)].mimic && !MovesByItselfBeyond(tree, b);
     });

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/drafting/draft.hpp"
 #include "elastocal/math/numbers.hpp"
 
@@ -106,6 +107,25 @@ TEST(Limbs, FingersOnALongForearmAreNoLimbs) {
                               "0 -0.02 -0.45"));
   }
   EXPECT_EQ(DraftProject(urdf, "r.urdf", {}).limbs.limbs.size(), 3u) << "two arms and a head";
+}
+
+// The tarsus of Cassie (agility_cassie, version 4): the spring of its heel and its foot part there,
+// 0.42 m apart. Halves of that would be short enough for fingers.
+TEST(Limbs, AFootFarFromASpringIsNoFinger) {
+  std::string text = "<robot name='r'>" + LinkText("pelvis");
+  for (const std::string side : {"left", "right"}) {
+    const std::string y = side == "left" ? "0.13" : "-0.13";
+    text += JointText("pelvis", side + "_hip_roll", "", "0 " + y + " 0") +
+            JointText(side + "_hip_roll", side + "_hip_yaw", "", "-0.09 0 0") +
+            JointText(side + "_hip_yaw", side + "_hip_pitch", "", "0 0 -0.09") +
+            JointText(side + "_hip_pitch", side + "_knee", "", "0 0 -0.12") +
+            JointText(side + "_knee", side + "_tarsus", "", "0.04 0 -0.435") +
+            JointText(side + "_tarsus", side + "_spring", "", "-0.013 0 -0.031") +
+            JointText(side + "_tarsus", side + "_foot", "", "0.408 0 -0.04");
+  }
+  const RobotTree tree = ParseUrdf(text + "</robot>", "r.urdf");
+  const Limbs found = FindLimbs(tree, ReadBodyShapes(tree, text + "</robot>", "r.urdf", {}), {});
+  EXPECT_EQ(std::count(found.tool.begin(), found.tool.end(), true), 0);
 }
 
 }  // namespace
