@@ -301,25 +301,39 @@ bool HasSole(const RobotTree& tree, int body) {
                      [&](const Link& link) { return link.body == body && NamedSole(link.name); });
 }
 
-/// Takes the toes from the legs. The foot is then the body in front of the toe's joint: one that
-/// touches the floor as the toe does, or that has a link named as a sole.
+/// Whether the last body of a leg is a toe. The foot is then the body in front of the toe's joint:
+/// one that touches the floor as the toe does, or that has a link named as a sole. To place the
+/// foot, the leg must have joints enough of its own without the toe.
+bool EndsWithToe(const RobotTree& tree, const RobotShapes& shapes,
+                 const std::vector<Transform>& poses, const Limb& leg) {
+  constexpr double kSameFloor = 0.005;  // of the longest limb: 6 mm of one of 1.25 m
+  const int foot = tree.joints[Size(leg.tip_body) - 1].parent_body;
+  const int hip = BodyLink(tree, leg.from_body);
+  if (ChainCoordinates(tree, hip, BodyLink(tree, foot)).size() < LeastLegJoints(false)) {
+    return false;
+  }
+  const double higher = LowestPoint(shapes, poses, foot) - LowestPoint(shapes, poses, leg.tip_body);
+  const bool named = HasSole(tree, foot) && !HasSole(tree, leg.tip_body);
+  return named || std::abs(higher) < kSameFloor * LongestBranch(tree);
+}
+
+/// Takes the toes from pairs of legs: from both, or from none.
 void LeaveOutToes(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics,
                   Limbs& found) {
-  constexpr double kSameFloor = 0.005;  // of the longest limb: 6 mm of one of 1.25 m
   const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
-  for (Limb& limb : found.limbs) {
-    while (limb.leg) {
-      const int foot = tree.joints[Size(limb.tip_body) - 1].parent_body;
-      const int link = BodyLink(tree, foot);
-      if (ChainCoordinates(tree, 0, link).size() < LeastLegJoints(false)) break;
-      const double higher =
-          LowestPoint(shapes, poses, foot) - LowestPoint(shapes, poses, limb.tip_body);
-      const bool named = HasSole(tree, foot) && !HasSole(tree, limb.tip_body);
-      if (!named && !(std::abs(higher) < kSameFloor * LongestBranch(tree))) break;
-      found.tool[Size(limb.tip_body)] = true;
-      limb.tip_body = foot;
-      limb.joints = JointsToBody(tree, foot);
-      limb.tip_link = TipLink(tree, semantics, limb);
+  const auto ends = [&](const Limb& leg) { return EndsWithToe(tree, shapes, poses, leg); };
+  for (Limb& leg : found.limbs) {
+    if (!leg.leg) continue;
+    Limb& other = found.limbs[Size(leg.mirror)];
+    while (other.leg && ends(leg) && ends(other)) {
+      for (Limb* one : {&leg, &other}) {
+        const int foot = tree.joints[Size(one->tip_body) - 1].parent_body;
+        found.tool[Size(one->tip_body)] = true;
+        found.toes.insert(one->tip_body);
+        one->tip_body = foot;
+        one->joints = JointsToBody(tree, foot);
+        one->tip_link = TipLink(tree, semantics, *one);
+      }
     }
   }
 }

@@ -128,5 +128,29 @@ TEST(Limbs, AFootFarFromASpringIsNoFinger) {
   EXPECT_EQ(std::count(found.tool.begin(), found.tool.end(), true), 0);
 }
 
+// To place a foot takes five joints, of which the waist is none: it moves both legs.
+TEST(Limbs, ToesAreTakenWhereJointsOfTheLegAreEnough) {
+  const auto toes = [](int joints_of_leg) {
+    std::string text = "<robot name='r'>" + LinkText("base") + JointText("base", "head", "") +
+                       JointText("base", "waist", "", "0 0 -0.05");
+    for (const std::string side : {"l", "r"}) {
+      const std::string leg = side + "_leg_";
+      text += JointText("waist", leg + "1", "", side == "l" ? "0 0.1 0" : "0 -0.1 0");
+      for (int k = 2; k <= joints_of_leg; ++k) {
+        text += JointText(leg + std::to_string(k - 1), leg + std::to_string(k), "", "0 0 -0.25");
+      }
+      const std::string foot = leg + std::to_string(joints_of_leg);
+      text += JointText(foot, side + "_dedo", "", "0.1 0 0") + LinkText(side + "_sole") +
+              "<joint name='" + side + "_fixed' type='fixed'><parent link='" + foot +
+              "'/><child link='" + side + "_sole'/></joint>";
+    }
+    text += "</robot>";
+    const RobotTree tree = ParseUrdf(text, "r.urdf");
+    return FindLimbs(tree, ReadBodyShapes(tree, text, "r.urdf", {}), {}).toes.size();
+  };
+  EXPECT_EQ(toes(4), 0u);
+  EXPECT_EQ(toes(5), 2u);
+}
+
 }  // namespace
 }  // namespace elastocal
