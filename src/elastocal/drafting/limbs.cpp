@@ -196,6 +196,14 @@ bool Names(const SemanticGroup& group, const RobotTree& tree, const Limb& limb) 
   return last;
 }
 
+/// Name of the first group that contains exactly the end of this limb; empty: none does.
+std::string GroupOf(const RobotTree& tree, const Semantics& semantics, const Limb& limb) {
+  for (const SemanticGroup& group : semantics.groups) {
+    if (Names(group, tree, limb)) return group.name;
+  }
+  return "";
+}
+
 /// The link that the SRDF names as the end, or the furthest link of the last body.
 int TipLink(const RobotTree& tree, const Semantics& semantics, const Limb& limb) {
   std::vector<std::string> named = semantics.end_links;
@@ -360,18 +368,17 @@ Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantic
   }
   PairMirrors(tree, found.limbs);
   FindFeet(tree, shapes, found.limbs);
+  const std::vector<Limb> with_toes = found.limbs;
   LeaveOutToes(tree, shapes, semantics, found);
   std::set<std::string> used;
-  for (Limb& limb : found.limbs) {
-    std::string name = NameLimb(tree, found.limbs, limb);
-    for (const SemanticGroup& group : semantics.groups) {
-      if (!Names(group, tree, limb)) continue;
-      name = group.name;
-      break;
-    }
+  for (std::size_t i = 0; i < found.limbs.size(); ++i) {
+    Limb& limb = found.limbs[i];
+    std::string name = GroupOf(tree, semantics, limb);
+    if (name.empty()) name = GroupOf(tree, semantics, with_toes[i]);
+    if (name.empty()) name = NameLimb(tree, found.limbs, limb);
     limb.name = FileName(name);
-    for (int i = 2; !used.insert(limb.name).second; ++i) {
-      limb.name = FileName(name) + "_" + std::to_string(i);
+    for (int n = 2; !used.insert(limb.name).second; ++n) {
+      limb.name = FileName(name) + "_" + std::to_string(n);
     }
   }
   return found;

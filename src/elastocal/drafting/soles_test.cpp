@@ -116,6 +116,18 @@ Limbs LimbsOf(const std::string& urdf, const Semantics& semantics = {}) {
   return FindLimbs(tree, ReadBodyShapes(tree, urdf, "talos.urdf", {}), semantics);
 }
 
+// The SRDF's groups may go on to the toe, or end at the foot.
+TEST(Limbs, LegsWithToesHaveTheNamesOfTheirGroups) {
+  const std::string urdf = WithToes(ReadFile(SourceFile("models/talos/talos.urdf")), true);
+  Semantics semantics;
+  semantics.groups = {{"to_the_toe", "dedo_left", {}}, {"to_the_foot", "right_sole_link", {}}};
+  std::vector<std::string> names;
+  for (const Limb& limb : LimbsOf(urdf, semantics).limbs) {
+    if (limb.leg) names.push_back(limb.name);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"to_the_toe", "to_the_foot"}));
+}
+
 // The right toe ends well above the floor, and no name tells that the body before it is the foot.
 TEST(Limbs, ToesAreThoseOfBothLegsOrOfNone) {
   std::string urdf = WithToes(ReadFile(SourceFile("models/talos/talos.urdf")), true);
