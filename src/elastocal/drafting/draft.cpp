@@ -283,11 +283,11 @@ void WarnOfGuesses(ProjectDraft& draft) {
 void TakeAttitude(const RootAttitude& attitude, const std::string& source, const MeshPlaces& places,
                   RobotTree& described, ProjectDraft& draft) {
   draft.warnings.push_back(
-      "the x-z plane of the root link " + Quote(described.links[0].name) +
-      ", x ahead and z up, is not the robot's plane of symmetry: the copy of the robot description "
-      "has a root link " +
+      "the axes of the root link " + Quote(described.links[0].name) +
+      " are not those of the robot (x ahead, z up, the x-z plane its plane of symmetry): the copy "
+      "of the robot description has a root link " +
       Quote(attitude.link) +
-      " of which it is. What stands in the frame of the root link is in that of the new one; where "
+      " whose axes are. What stands in the frame of the root link is in that of the new one; where "
       "a controller must find the old root, take the new link and its joint out of the calibrated "
       "robot description again");
   draft.urdf = AddRootLink(draft.urdf, described, attitude);
