@@ -152,5 +152,20 @@ TEST(Limbs, ToesAreTakenWhereJointsOfTheLegAreEnough) {
   EXPECT_EQ(toes(5), 2u);
 }
 
+// Of two fingers on a foot nothing tells that they are toes, on which the leg would have ended.
+TEST(Limbs, FingersOnAFootAreNotCalledToes) {
+  std::string urdf = UpperBody(-0.1, 0.5, "leg_");
+  for (const std::string side : {"l", "r"}) {
+    const std::string foot = side + "_leg_3";
+    urdf.insert(urdf.rfind("</robot>"), JointText(foot, side + "_a", "", "0.05 0.02 0") +
+                                            JointText(foot, side + "_b", "", "0.05 -0.02 0"));
+  }
+  const ProjectDraft draft = DraftProject(urdf, "r.urdf", {});
+  EXPECT_EQ(std::count(draft.limbs.tool.begin(), draft.limbs.tool.end(), true), 4);
+  for (const std::string& warning : draft.warnings) {
+    EXPECT_EQ(warning.find("toes"), std::string::npos) << warning;
+  }
+}
+
 }  // namespace
 }  // namespace elastocal
