@@ -100,7 +100,7 @@ TEST_F(Program, UnknownKeyJointAndMarkerComeWithTheNearestKnownName) {
 TEST_F(Program, RobotsOnNoSolesAreRefusedBeforeTheMotionIsPlanned) {
   const ProgramResult result = RunProgram("plan " + project_ + " --kind random --robots 1 -o " +
                                           (scratch_.path() / "motion.csv").string());
-  ExpectRefused(result, {"--robots", "no section 'standing'"});
+  ExpectRefused(result, {"without a number of robots", "no section 'standing'"});
   EXPECT_EQ(result.out, "");
 }
 

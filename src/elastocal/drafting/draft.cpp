@@ -232,19 +232,13 @@ void JoinMirrors(ProjectDraft& draft) {
 /// Names the joints of toes, which lie beyond the feet.
 void WarnOfToes(ProjectDraft& draft) {
   std::string names;
-  for (std::size_t k = 0; k < draft.tree.joints.size(); ++k) {
-    int foot = static_cast<int>(k) + 1;
-    const bool wheel = !std::isfinite(draft.tree.joints[k].limits.lower);
-    if (!draft.limbs.tool[Size(foot)] || wheel) continue;
-    while (draft.limbs.tool[Size(foot)]) foot = draft.tree.joints[Size(foot - 1)].parent_body;
-    const bool leg = std::any_of(draft.limbs.limbs.begin(), draft.limbs.limbs.end(),
-                                 [&](const Limb& l) { return l.leg && l.tip_body == foot; });
-    if (leg) names += (names.empty() ? "" : ", ") + Quote(draft.tree.joints[k].name);
+  for (const int toe : draft.limbs.toes) {
+    names += (names.empty() ? "" : ", ") + Quote(draft.tree.joints[Size(toe - 1)].name);
   }
   if (names.empty()) return;
   draft.warnings.push_back(
-      "soles are those of the feet without toes, and the joints of toes are "
-      "not calibrated but stay at rest: " +
+      "soles are those of the feet without toes, and the joints of toes are not calibrated but "
+      "stay at rest: " +
       names);
 }
 
@@ -289,12 +283,11 @@ void WarnOfGuesses(ProjectDraft& draft) {
 void TakeAttitude(const RootAttitude& attitude, const std::string& source, const MeshPlaces& places,
                   RobotTree& described, ProjectDraft& draft) {
   draft.warnings.push_back(
-      "the root link " + Quote(described.links[0].name) +
-      " does not look along x, with z up, from the robot's plane of symmetry: the copy of the "
-      "robot "
-      "description has a root link " +
+      "the axes of the root link " + Quote(described.links[0].name) +
+      " are not those of the robot (x ahead, z up, the x-z plane its plane of symmetry): the copy "
+      "of the robot description has a root link " +
       Quote(attitude.link) +
-      " that does. What stands in the frame of the root link is in that of the new one; where "
+      " whose axes are. What stands in the frame of the root link is in that of the new one; where "
       "a controller must find the old root, take the new link and its joint out of the calibrated "
       "robot description again");
   draft.urdf = AddRootLink(draft.urdf, described, attitude);

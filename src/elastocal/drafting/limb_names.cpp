@@ -70,11 +70,19 @@ bool NamedSole(const std::string& name) {
   return std::find(words.begin(), words.end(), "sole") != words.end();
 }
 
+bool IsLegByNames(const RobotTree& tree, const Limb& limb) {
+  return Says(tree, limb,
+              {"leg", "hip", "thigh", "femur", "knee", "calf", "shank", "shin", "tibia", "ankle",
+               "tarsus", "foot", "paw", "hoof", "heel", "toe", "sole"});
+}
+
 bool IsArmByNames(const RobotTree& tree, const Limb& limb) {
   return Says(tree, limb, {"arm", "elbow", "forearm", "wrist", "hand", "palm", "gripper"}) &&
-         !Says(tree, limb,
-               {"leg", "hip", "thigh", "femur", "knee", "calf", "shank", "shin", "tibia", "ankle",
-                "tarsus", "foot", "paw", "hoof", "heel", "toe", "sole"});
+         !IsLegByNames(tree, limb);
+}
+
+bool IsHeadByNames(const RobotTree& tree, const Limb& limb) {
+  return Says(tree, limb, {"head", "neck"});
 }
 
 std::string NameLimb(const RobotTree& tree, const std::vector<Limb>& limbs, const Limb& limb) {
@@ -87,7 +95,7 @@ std::string NameLimb(const RobotTree& tree, const std::vector<Limb>& limbs, cons
   if (limb.mirror < 0) {
     constexpr std::size_t kJointsOfAnArm = 4;
     const std::size_t trunk = JointsToBody(tree, limb.from_body).size();
-    if (Says(tree, limb, {"head", "neck"})) return "head";
+    if (IsHeadByNames(tree, limb)) return "head";
     if (limb.joints.size() - trunk < kJointsOfAnArm) {
       return Says(tree, limb, {"hip", "knee", "ankle"}) ? "leg" : "head";
     }

@@ -19,10 +19,16 @@ bool NamedSole(const std::string& name);
 /// are left.
 int SideByNames(const RobotTree& tree, const Limb& limb);
 
+/// Whether the names of a limb's own joints or tip are those of a leg ("hip", "knee", "foot").
+bool IsLegByNames(const RobotTree& tree, const Limb& limb);
+
 /// Whether the names of a limb's own joints or tip are those of an arm ("elbow", "wrist", "hand")
 /// and none is that of a leg. ("shoulder" does not count: legs of four-legged robots have shoulders
 /// as well.)
 bool IsArmByNames(const RobotTree& tree, const Limb& limb);
+
+/// Whether the names of a limb's own joints or tip are those of a head or a neck.
+bool IsHeadByNames(const RobotTree& tree, const Limb& limb);
 
 /// Name of a limb, such as "left_leg". The side follows from the names in the URDF if they tell it,
 /// because a root link may face any direction; otherwise from the position of the tip in the zero

@@ -53,23 +53,36 @@ bool MovesByItselfBeyond(const RobotTree& tree, int body) {
   });
 }
 
-/// Reach of the branches of a body from their middle, m: a forearm is long, its fingers are not. Of
-/// a single branch, its reach from the body.
-double ReachOfFingers(const RobotTree& tree, int body, const std::vector<int>& branches) {
-  if (branches.size() < 2) return Reach(tree, body);
-  std::vector<Eigen::Vector3d> places;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const int branch : branches) {
+/// Largest number of joints beyond a body, up to the end of a branch.
+int JointsBeyond(const RobotTree& tree, int body) {
+  int most = 0;
+  for (const int next : Branches(tree, body)) most = std::max(most, 1 + JointsBeyond(tree, next));
+  return most;
+}
+
+/// Whether some branches of a body are fingers at the far end of a long link, as of a forearm
+/// without a wrist: they have joints alike, or one follows another, and the largest distance
+/// between two of them plus their reach is at most `most`, m.
+bool AreFingersFarOut(const RobotTree& tree, const std::vector<int>& branches, double most) {
+  if (branches.size() < 2) return false;
+  constexpr int kAlike = 1;  // a thumb often has one joint more or less than a finger
+  int least_joints = std::numeric_limits<int>::max(), most_joints = 0;
+  bool follows = false;
+  double spread = 0.0, reach = 0.0;
+  const auto place = [&](int branch) -> Eigen::Vector3d {
     const Joint& joint = tree.joints[Size(branch - 1)];
-    places.push_back(tree.links[Size(joint.parent_link)].T_body_link *
-                     joint.T_parent_child.translation());
-    middle += places.back() / static_cast<double>(branches.size());
+    return tree.links[Size(joint.parent_link)].T_body_link * joint.T_parent_child.translation();
+  };
+  for (const int branch : branches) {
+    least_joints = std::min(least_joints, JointsBeyond(tree, branch));
+    most_joints = std::max(most_joints, JointsBeyond(tree, branch));
+    follows = follows || tree.joints[Size(branch - 1)].mimic;
+    reach = std::max(reach, Reach(tree, branch));
+    for (const int other : branches) {
+      spread = std::max(spread, (place(branch) - place(other)).norm());
+    }
   }
-  double longest = 0.0;
-  for (std::size_t i = 0; i < branches.size(); ++i) {
-    longest = std::max(longest, (places[i] - middle).norm() + Reach(tree, branches[i]));
-  }
-  return longest;
+  return (follows || most_joints - least_joints <= kAlike) && spread + reach <= most;
 }
 
 /// Marks bodies that belong to a gripper or to fingers.
@@ -82,7 +95,8 @@ std::vector<bool> FindTools(const RobotTree& tree) {
   for (int body = 1; body < tree.body_count(); ++body) {
     const std::vector<int> branches = Branches(tree, body);
     if (JointsToBody(tree, body).size() < kLeastJoints || branches.empty()) continue;
-    if (ReachOfFingers(tree, body, branches) > kShort * longest) continue;
+    const double most = kShort * longest;
+    if (Reach(tree, body) > most && !AreFingersFarOut(tree, branches, most)) continue;
     const bool mimics = std::any_of(branches.begin(), branches.end(), [&](int b) {
       return tree.joints[Size(b - 1)].mimic && !MovesByItselfBeyond(tree, b);
     });
@@ -180,6 +194,14 @@ bool Names(const SemanticGroup& group, const RobotTree& tree, const Limb& limb) 
     last = last || k == limb.joints.back();
   }
   return last;
+}
+
+/// Name of the first group that contains exactly the end of this limb; empty: none does.
+std::string GroupOf(const RobotTree& tree, const Semantics& semantics, const Limb& limb) {
+  for (const SemanticGroup& group : semantics.groups) {
+    if (Names(group, tree, limb)) return group.name;
+  }
+  return "";
 }
 
 /// The link that the SRDF names as the end, or the furthest link of the last body.
@@ -287,25 +309,39 @@ bool HasSole(const RobotTree& tree, int body) {
                      [&](const Link& link) { return link.body == body && NamedSole(link.name); });
 }
 
-/// Takes the toes from the legs. The foot is then the body in front of the toe's joint: one that
-/// touches the floor as the toe does, or that has a link named as a sole.
+/// Whether the last body of a leg is a toe. The foot is then the body in front of the toe's joint:
+/// one that touches the floor as the toe does, or that has a link named as a sole. To place the
+/// foot, the leg must have joints enough of its own without the toe.
+bool EndsWithToe(const RobotTree& tree, const RobotShapes& shapes,
+                 const std::vector<Transform>& poses, const Limb& leg) {
+  constexpr double kSameFloor = 0.005;  // of the longest limb: 6 mm of one of 1.25 m
+  const int foot = tree.joints[Size(leg.tip_body) - 1].parent_body;
+  const int hip = BodyLink(tree, leg.from_body);
+  if (ChainCoordinates(tree, hip, BodyLink(tree, foot)).size() < LeastLegJoints(false)) {
+    return false;
+  }
+  const double higher = LowestPoint(shapes, poses, foot) - LowestPoint(shapes, poses, leg.tip_body);
+  const bool named = HasSole(tree, foot) && !HasSole(tree, leg.tip_body);
+  return named || std::abs(higher) < kSameFloor * LongestBranch(tree);
+}
+
+/// Takes the toes from pairs of legs: from both, or from none.
 void LeaveOutToes(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics,
                   Limbs& found) {
-  constexpr double kSameFloor = 0.005;  // of the longest limb: 6 mm of one of 1.25 m
   const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
-  for (Limb& limb : found.limbs) {
-    while (limb.leg) {
-      const int foot = tree.joints[Size(limb.tip_body) - 1].parent_body;
-      const int link = BodyLink(tree, foot);
-      if (ChainCoordinates(tree, 0, link).size() < LeastLegJoints(false)) break;
-      const double higher =
-          LowestPoint(shapes, poses, foot) - LowestPoint(shapes, poses, limb.tip_body);
-      const bool named = HasSole(tree, foot) && !HasSole(tree, limb.tip_body);
-      if (!named && !(std::abs(higher) < kSameFloor * LongestBranch(tree))) break;
-      found.tool[Size(limb.tip_body)] = true;
-      limb.tip_body = foot;
-      limb.joints = JointsToBody(tree, foot);
-      limb.tip_link = TipLink(tree, semantics, limb);
+  const auto ends = [&](const Limb& leg) { return EndsWithToe(tree, shapes, poses, leg); };
+  for (Limb& leg : found.limbs) {
+    if (!leg.leg) continue;
+    Limb& other = found.limbs[Size(leg.mirror)];
+    while (other.leg && ends(leg) && ends(other)) {
+      for (Limb* one : {&leg, &other}) {
+        const int foot = tree.joints[Size(one->tip_body) - 1].parent_body;
+        found.tool[Size(one->tip_body)] = true;
+        found.toes.insert(one->tip_body);
+        one->tip_body = foot;
+        one->joints = JointsToBody(tree, foot);
+        one->tip_link = TipLink(tree, semantics, *one);
+      }
     }
   }
 }
@@ -332,18 +368,17 @@ Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantic
   }
   PairMirrors(tree, found.limbs);
   FindFeet(tree, shapes, found.limbs);
+  const std::vector<Limb> with_toes = found.limbs;
   LeaveOutToes(tree, shapes, semantics, found);
   std::set<std::string> used;
-  for (Limb& limb : found.limbs) {
-    std::string name = NameLimb(tree, found.limbs, limb);
-    for (const SemanticGroup& group : semantics.groups) {
-      if (!Names(group, tree, limb)) continue;
-      name = group.name;
-      break;
-    }
+  for (std::size_t i = 0; i < found.limbs.size(); ++i) {
+    Limb& limb = found.limbs[i];
+    std::string name = GroupOf(tree, semantics, limb);
+    if (name.empty()) name = GroupOf(tree, semantics, with_toes[i]);
+    if (name.empty()) name = NameLimb(tree, found.limbs, limb);
     limb.name = FileName(name);
-    for (int i = 2; !used.insert(limb.name).second; ++i) {
-      limb.name = FileName(name) + "_" + std::to_string(i);
+    for (int n = 2; !used.insert(limb.name).second; ++n) {
+      limb.name = FileName(name) + "_" + std::to_string(n);
     }
   }
   return found;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Limb {
 struct Limbs {
   std::vector<Limb> limbs;  ///< in the order of the URDF
   std::vector<bool> tool;   ///< by body: part of a hand, a toe or a wheel, of no limb
+  std::set<int> toes;       ///< bodies beyond the feet of legs
 };
 
 /// Finds the limbs of a robot from its tree. A body that parts into several short branches is a
@@ -32,7 +34,8 @@ struct Limbs {
 /// Legs are limbs with a mirror image whose ends are the lowest of the robot in the zero posture,
 /// well below the root link (or below their own first joint where the root link is a frame on the
 /// floor), and that do not begin well above it (as arms of an upper body do). A leg ends with the
-/// foot; toes that a joint moves belong to none. Names are those of
+/// foot; toes that a joint moves belong to none (those of both legs
+/// of a pair, or of neither). Names are those of
 /// the SRDF's groups, or given by NameLimb: "left_leg", "right_arm", "head"; they are unique and
 /// valid as names of files. The tip is the link that the SRDF names, or the furthest link of the
 /// last body.

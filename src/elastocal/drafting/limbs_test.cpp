@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/drafting/draft.hpp"
 #include "elastocal/math/numbers.hpp"
 
@@ -106,6 +107,64 @@ TEST(Limbs, FingersOnALongForearmAreNoLimbs) {
                               "0 -0.02 -0.45"));
   }
   EXPECT_EQ(DraftProject(urdf, "r.urdf", {}).limbs.limbs.size(), 3u) << "two arms and a head";
+}
+
+// The tarsus of Cassie (agility_cassie, version 4): the spring of its heel and its foot part there,
+// 0.42 m apart. Halves of that would be short enough for fingers.
+TEST(Limbs, AFootFarFromASpringIsNoFinger) {
+  std::string text = "<robot name='r'>" + LinkText("pelvis");
+  for (const std::string side : {"left", "right"}) {
+    const std::string y = side == "left" ? "0.13" : "-0.13";
+    text += JointText("pelvis", side + "_hip_roll", "", "0 " + y + " 0") +
+            JointText(side + "_hip_roll", side + "_hip_yaw", "", "-0.09 0 0") +
+            JointText(side + "_hip_yaw", side + "_hip_pitch", "", "0 0 -0.09") +
+            JointText(side + "_hip_pitch", side + "_knee", "", "0 0 -0.12") +
+            JointText(side + "_knee", side + "_tarsus", "", "0.04 0 -0.435") +
+            JointText(side + "_tarsus", side + "_spring", "", "-0.013 0 -0.031") +
+            JointText(side + "_tarsus", side + "_foot", "", "0.408 0 -0.04");
+  }
+  const RobotTree tree = ParseUrdf(text + "</robot>", "r.urdf");
+  const Limbs found = FindLimbs(tree, ReadBodyShapes(tree, text + "</robot>", "r.urdf", {}), {});
+  EXPECT_EQ(std::count(found.tool.begin(), found.tool.end(), true), 0);
+}
+
+// To place a foot takes five joints, of which the waist is none: it moves both legs.
+TEST(Limbs, ToesAreTakenWhereJointsOfTheLegAreEnough) {
+  const auto toes = [](int joints_of_leg) {
+    std::string text = "<robot name='r'>" + LinkText("base") + JointText("base", "head", "") +
+                       JointText("base", "waist", "", "0 0 -0.05");
+    for (const std::string side : {"l", "r"}) {
+      const std::string leg = side + "_leg_";
+      text += JointText("waist", leg + "1", "", side == "l" ? "0 0.1 0" : "0 -0.1 0");
+      for (int k = 2; k <= joints_of_leg; ++k) {
+        text += JointText(leg + std::to_string(k - 1), leg + std::to_string(k), "", "0 0 -0.25");
+      }
+      const std::string foot = leg + std::to_string(joints_of_leg);
+      text += JointText(foot, side + "_dedo", "", "0.1 0 0") + LinkText(side + "_sole") +
+              "<joint name='" + side + "_fixed' type='fixed'><parent link='" + foot +
+              "'/><child link='" + side + "_sole'/></joint>";
+    }
+    text += "</robot>";
+    const RobotTree tree = ParseUrdf(text, "r.urdf");
+    return FindLimbs(tree, ReadBodyShapes(tree, text, "r.urdf", {}), {}).toes.size();
+  };
+  EXPECT_EQ(toes(4), 0u);
+  EXPECT_EQ(toes(5), 2u);
+}
+
+// Of two fingers on a foot nothing tells that they are toes, on which the leg would have ended.
+TEST(Limbs, FingersOnAFootAreNotCalledToes) {
+  std::string urdf = UpperBody(-0.1, 0.5, "leg_");
+  for (const std::string side : {"l", "r"}) {
+    const std::string foot = side + "_leg_3";
+    urdf.insert(urdf.rfind("</robot>"), JointText(foot, side + "_a", "", "0.05 0.02 0") +
+                                            JointText(foot, side + "_b", "", "0.05 -0.02 0"));
+  }
+  const ProjectDraft draft = DraftProject(urdf, "r.urdf", {});
+  EXPECT_EQ(std::count(draft.limbs.tool.begin(), draft.limbs.tool.end(), true), 4);
+  for (const std::string& warning : draft.warnings) {
+    EXPECT_EQ(warning.find("toes"), std::string::npos) << warning;
+  }
 }
 
 }  // namespace

@@ -18,6 +18,9 @@ namespace {
 struct SymmetryPlane {
   Eigen::Vector3d normal;
   double offset = 0.0;
+  bool sides = false;  ///< names tell that the two limbs are on opposite sides
+  bool legs = false;   ///< names tell that both are legs
+  bool arms = false;   ///< names tell the sides of two limbs, long enough for arms
 };
 
 /// The plane in which the joints of two limbs are mirror images, if they are within 2 % of the
@@ -41,7 +44,11 @@ std::optional<SymmetryPlane> PlaneBetween(const RobotTree& tree,
   }
   const auto count = static_cast<double>(places.size());
   if (places.empty() || between.norm() < kApart * longest * count) return {};
-  const SymmetryPlane plane{between.normalized(), between.normalized().dot(middle) / count};
+  constexpr std::size_t kJointsOfAnArm = 5;
+  SymmetryPlane plane{between.normalized(), between.normalized().dot(middle) / count};
+  plane.sides = SideByNames(tree, a) * SideByNames(tree, b) < 0;
+  plane.legs = IsLegByNames(tree, a) && IsLegByNames(tree, b);
+  plane.arms = plane.sides && !plane.legs && places.size() >= kJointsOfAnArm;
   for (const auto& [here, there] : places) {
     const Eigen::Vector3d image =
         here - 2.0 * (plane.normal.dot(here) - plane.offset) * plane.normal;
@@ -108,12 +115,27 @@ double LooksAhead(const TurnedRobot& robot, const Limbs& limbs) {
   return std::abs(feet) > kNotable * LongestBranch(robot.tree) ? feet : knees;
 }
 
-/// Whether mirrored limbs are legs or, as second best, arms.
-bool HasMirrored(const Limbs& limbs, bool legs) {
-  constexpr std::size_t kJointsOfAnArm = 5;
-  return std::any_of(limbs.limbs.begin(), limbs.limbs.end(), [&](const Limb& limb) {
-    return limb.mirror >= 0 && (legs ? limb.leg : limb.joints.size() >= kJointsOfAnArm);
-  });
+bool HasLegs(const Limbs& limbs) {
+  return std::any_of(limbs.limbs.begin(), limbs.limbs.end(), [](const Limb& l) { return l.leg; });
+}
+
+/// Whether some limbs are legs, and all whose names say so.
+bool AreLegsAsNamed(const RobotTree& tree, const Limbs& limbs) {
+  return HasLegs(limbs) && std::all_of(limbs.limbs.begin(), limbs.limbs.end(), [&](const Limb& l) {
+           return l.leg || !IsLegByNames(tree, l);
+         });
+}
+
+/// Whether mirrored limbs leave no doubt that the root link looks along x, with z up. They do where
+/// names say that they are legs, but they are not.
+bool IsRootAhead(const RobotTree& tree, const Limbs& limbs) {
+  const auto mirrored = [](const Limb& limb) { return limb.mirror >= 0; };
+  const auto doubtful = [&](const Limb& limb) {
+    return mirrored(limb) && IsLegByNames(tree, limb) &&
+           IsLegByNames(tree, limbs.limbs[Size(limb.mirror)]);
+  };
+  return std::any_of(limbs.limbs.begin(), limbs.limbs.end(), mirrored) &&
+         (HasLegs(limbs) || std::none_of(limbs.limbs.begin(), limbs.limbs.end(), doubtful));
 }
 
 Transform FrameOf(const SymmetryPlane& plane, const Eigen::Vector3d& up, double ahead) {
@@ -124,68 +146,99 @@ Transform FrameOf(const SymmetryPlane& plane, const Eigen::Vector3d& up, double 
   return T_root_new.inverse();
 }
 
+/// The planes of symmetry of any two limbs, first those of which names tell the sides: the pairs of
+/// four legs have several planes.
+std::vector<SymmetryPlane> PlanesOf(const RobotTree& tree, const std::vector<Limb>& limbs) {
+  const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
+  std::vector<SymmetryPlane> planes;
+  for (std::size_t i = 0; i < limbs.size(); ++i) {
+    for (std::size_t j = i + 1; j < limbs.size(); ++j) {
+      if (const auto plane = PlaneBetween(tree, poses, limbs[i], limbs[j])) {
+        planes.push_back(*plane);
+      }
+    }
+  }
+  std::stable_partition(planes.begin(), planes.end(),
+                        [](const auto& plane) { return plane.sides; });
+  return planes;
+}
+
+std::string NewLinkName(const RobotTree& tree) {
+  std::string name = "looks_ahead";
+  const auto taken = [&](const Link& link) { return link.name == name; };
+  while (std::any_of(tree.links.begin(), tree.links.end(), taken)) name += "_2";
+  return name;
+}
+
 }  // namespace
 
 std::optional<RootAttitude> FindRootAttitude(const RobotTree& tree, const RobotShapes& shapes,
                                              const Semantics& semantics) {
   constexpr double kLevel = 0.05;
   const Limbs limbs = FindLimbs(tree, shapes, semantics);
-  const auto mirrored = [](const Limb& limb) { return limb.mirror >= 0; };
-  if (std::any_of(limbs.limbs.begin(), limbs.limbs.end(), mirrored)) return {};
-  const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
-  std::vector<SymmetryPlane> planes;
-  for (std::size_t i = 0; i < limbs.limbs.size(); ++i) {
-    for (std::size_t j = i + 1; j < limbs.limbs.size(); ++j) {
-      if (const auto plane = PlaneBetween(tree, poses, limbs.limbs[i], limbs.limbs[j])) {
-        planes.push_back(*plane);
-      }
-    }
-  }
-  const auto looks = [&](SymmetryPlane plane, const Eigen::Vector3d& up,
-                         bool legs) -> std::optional<RootAttitude> {
-    if (std::abs(plane.normal.dot(up)) > kLevel) return {};
-    plane.normal = (plane.normal - plane.normal.dot(up) * up).normalized();
-    RootAttitude attitude{FrameOf(plane, up, 1.0), "looks_ahead"};
-    const TurnedRobot turned = Turned(tree, shapes, attitude.T_new_root);
-    const Limbs found = FindLimbs(turned.tree, turned.shapes, semantics);
-    if (!HasMirrored(found, legs)) return {};
-    if (LooksAhead(turned, found) < 0.0) attitude.T_new_root = FrameOf(plane, up, -1.0);
-    const auto taken = [&](const Link& link) { return link.name == attitude.link; };
-    while (std::any_of(tree.links.begin(), tree.links.end(), taken)) attitude.link += "_2";
-    return attitude;
+  if (IsRootAhead(tree, limbs)) return {};
+  const std::vector<SymmetryPlane> planes = PlanesOf(tree, limbs.limbs);
+  const auto is_mirrored = [](const Limb& limb) { return limb.mirror >= 0; };
+  const auto mirrored = [&](const Limbs& found) {
+    return std::count_if(found.limbs.begin(), found.limbs.end(), is_mirrored);
   };
-  // Legs hang below the root link, whatever its axes; of arms nothing tells what is up.
-  const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  for (const int axis : {2, 1, 0}) {
-    for (const double sign : {1.0, -1.0}) {
-      for (const SymmetryPlane& plane : planes) {
-        if (auto attitude = looks(plane, sign * axes.col(axis), true)) return attitude;
-      }
+  // Of the planes that fit, the one in which most limbs are mirrored.
+  const auto best = [&](const Eigen::Vector3d& up, const auto& may_be, const auto& fits) {
+    std::optional<RootAttitude> chosen;
+    std::ptrdiff_t most = 0;
+    for (SymmetryPlane plane : planes) {
+      if (!may_be(plane) || std::abs(plane.normal.dot(up)) > kLevel) continue;
+      plane.normal = (plane.normal - plane.normal.dot(up) * up).normalized();
+      Transform T_new_root = FrameOf(plane, up, 1.0);
+      const TurnedRobot turned = Turned(tree, shapes, T_new_root);
+      const Limbs found = FindLimbs(turned.tree, turned.shapes, semantics);
+      if (!fits(found) || mirrored(found) <= most) continue;
+      most = mirrored(found);
+      if (LooksAhead(turned, found) < 0.0) T_new_root = FrameOf(plane, up, -1.0);
+      chosen = RootAttitude{T_new_root, NewLinkName(tree)};
     }
+    return chosen;
+  };
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(),
+                        z = Eigen::Vector3d::UnitZ();
+  const bool level = mirrored(limbs) == 0;  // else only another axis can point up
+  if (level) {
+    const auto any = [](const SymmetryPlane&) { return true; };
+    if (auto attitude = best(z, any, HasLegs)) return attitude;
   }
-  for (const SymmetryPlane& plane : planes) {
-    if (auto attitude = looks(plane, axes.col(2), false)) return attitude;
+  const auto of_legs = [](const SymmetryPlane& plane) { return plane.legs; };
+  const auto as_named = [&](const Limbs& found) { return AreLegsAsNamed(tree, found); };
+  for (const Eigen::Vector3d& up :
+       {Eigen::Vector3d(-z), y, Eigen::Vector3d(-y), x, Eigen::Vector3d(-x)}) {
+    if (auto attitude = best(up, of_legs, as_named)) return attitude;
   }
-  return {};
+  const bool head = std::any_of(limbs.limbs.begin(), limbs.limbs.end(),
+                                [&](const Limb& limb) { return IsHeadByNames(tree, limb); });
+  if (!level || !head) return {};
+  const auto of_arms = [](const SymmetryPlane& plane) { return plane.arms; };
+  return best(z, of_arms, [](const Limbs&) { return true; });
 }
 
 std::string AddRootLink(const std::string& urdf, const RobotTree& tree,
                         const RootAttitude& attitude) {
   const std::size_t end = urdf.rfind("</robot");
   if (end == std::string::npos) return urdf;
+  std::string joint = attitude.link + "_fixed";
+  const auto taken = [&](char quote) { return urdf.find(quote + joint + quote) != urdf.npos; };
+  while (taken('"') || taken('\'')) joint += "_2";
   const Eigen::Vector3d p = attitude.T_new_root.translation();
   const Eigen::Vector3d rpy = ToRpy(attitude.T_new_root.linear(), Eigen::Vector3d::Zero());
   return urdf.substr(0, end) +
          fmt::format(
              "  <!-- Added by elastocal init: a root whose x points ahead, and z up. -->\n"
              "  <link name=\"{0}\"/>\n"
-             "  <joint name=\"{0}_fixed\" type=\"fixed\">\n"
+             "  <joint name=\"{8}\" type=\"fixed\">\n"
              "    <parent link=\"{0}\"/>\n"
              "    <child link=\"{1}\"/>\n"
              "    <origin xyz=\"{2:.6f} {3:.6f} {4:.6f}\" rpy=\"{5:.9f} {6:.9f} {7:.9f}\"/>\n"
              "  </joint>\n",
              attitude.link, EscapedXml(tree.links[0].name), p.x(), p.y(), p.z(), rpy.x(), rpy.y(),
-             rpy.z()) +
+             rpy.z(), joint) +
          urdf.substr(end);
 }
 

@@ -111,6 +111,35 @@ std::string WithToes(std::string urdf, bool shapes) {
   return urdf;
 }
 
+Limbs LimbsOf(const std::string& urdf, const Semantics& semantics = {}) {
+  const RobotTree tree = ParseUrdf(urdf, "talos.urdf");
+  return FindLimbs(tree, ReadBodyShapes(tree, urdf, "talos.urdf", {}), semantics);
+}
+
+// The SRDF's groups may go on to the toe, or end at the foot.
+TEST(Limbs, LegsWithToesHaveTheNamesOfTheirGroups) {
+  const std::string urdf = WithToes(ReadFile(SourceFile("models/talos/talos.urdf")), true);
+  Semantics semantics;
+  semantics.groups = {{"to_the_toe", "dedo_left", {}}, {"to_the_foot", "right_sole_link", {}}};
+  std::vector<std::string> names;
+  for (const Limb& limb : LimbsOf(urdf, semantics).limbs) {
+    if (limb.leg) names.push_back(limb.name);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"to_the_toe", "to_the_foot"}));
+}
+
+// The right toe ends well above the floor, and no name tells that the body before it is the foot.
+TEST(Limbs, ToesAreThoseOfBothLegsOrOfNone) {
+  std::string urdf = WithToes(ReadFile(SourceFile("models/talos/talos.urdf")), true);
+  EXPECT_EQ(LimbsOf(urdf).toes.size(), 2u);
+  const std::string low = "<origin xyz='0.035 0 0.015'/>", sole = "right_sole_link";
+  urdf.replace(urdf.rfind(low), low.size(), "<origin xyz='0.035 0 0.035'/>");
+  for (std::size_t at; (at = urdf.find(sole)) != std::string::npos;) {
+    urdf.replace(at, sole.size(), "right_floor");
+  }
+  EXPECT_EQ(LimbsOf(urdf).toes.size(), 0u);
+}
+
 // A toe ends the tree behind the foot, but nothing stands on toes alone.
 TEST(Soles, AreThoseOfTheFeetWithoutToes) {
   const std::string plain = ReadFile(SourceFile("models/talos/talos.urdf"));

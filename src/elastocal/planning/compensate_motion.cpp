@@ -93,7 +93,7 @@ void CheckLimits(const Project& project, CompensatedMotion& result) {
            "plan it slower, or its limb less stretched there");
   if (result.has_clearance && result.clearance.value < 0.0) {
     refuse("parts touch", result.clearance, 1e3, "mm",
-           "plan more room there (collision.margin_mm of the project)");
+           "design and plan again with more room there (collision.margin_mm of the project)");
   }
 }
 

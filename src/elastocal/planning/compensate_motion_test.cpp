@@ -111,8 +111,9 @@ TEST(CompensateMotion, ARefusalNamesTheJointThatStopsAtItsLimit) {
   EXPECT_EQ(result.broken[0].find("stopped by a joint's limit: leg_left_4_joint ("), 0U)
       << result.broken[0];
   EXPECT_NE(result.broken[0].find("(a degree counts 5.2 mm; 1 of 1 samples"), std::string::npos);
-  EXPECT_NE(result.broken[0].find("plan the motion further from this limit (design and plan with "
-                                  "--limit-margin-deg"),
+  EXPECT_NE(result.broken[0].find("plan the motion further from this limit (design and plan again "
+                                  "with --limit-margin-deg, or for an arm with a narrower "
+                                  "design.range_deg"),
             std::string::npos);
 }
 

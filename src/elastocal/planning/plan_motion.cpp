@@ -248,9 +248,10 @@ std::vector<std::string> ValidationChains(const Project& project) {
 
 void CheckTries(const Project& project, const MotionTrialOptions& options) {
   if (options.robots == 0 || !project.soles.empty()) return;
-  throw InputError(project.file.string() +
-                   ": no section 'standing' with the soles that --robots could stand on: the root "
-                   "link is held still, and nothing can fall; plan without --robots");
+  throw InputError(
+      project.file.string() +
+      ": no section 'standing' with soles on which virtual robots could stand: the root "
+      "link is held still, and nothing can fall; plan without a number of robots");
 }
 
 std::vector<MotionTrial> TryMotion(const Project& project, const JointMotion& motion,

@@ -44,10 +44,13 @@ void StoppedJoints::Look(const Compensator& compensator, double time_s, Compensa
                          Worst& worst) {
   std::vector<std::string> joints;
   double left = -1.0, arm_m = 0.0;
+  bool turns = false;
   const std::vector<unsigned>& stopped = compensator.stopped();
   for (std::size_t c = 0; c < stopped.size(); ++c) {
     if (stopped[c] != kind) continue;
     joints.push_back(JointAt(compensator, static_cast<Eigen::Index>(c)));
+    const Joint& joint = tree_.joints[static_cast<std::size_t>(tree_.coordinate_joint[c])];
+    turns = turns || joint.type != JointType::kPrismatic;
     const double here = compensator.left_m(static_cast<int>(c));
     if (here <= left) continue;
     left = here;
@@ -60,6 +63,7 @@ void StoppedJoints::Look(const Compensator& compensator, double time_s, Compensa
   worst.time_s = time_s;
   worst.arm_m = arm_m;
   worst.joints = std::move(joints);
+  worst.turns = turns;
 }
 
 void StoppedJoints::Look(const Compensator& compensator, double time_s) {
@@ -69,21 +73,25 @@ void StoppedJoints::Look(const Compensator& compensator, double time_s) {
 
 std::vector<std::string> StoppedJoints::Describe(int samples) const {
   std::vector<std::string> sentences;
-  const auto describe = [&](const Worst& worst, const char* what, const char* advice) {
+  const auto describe = [&](const Worst& worst, const char* what, const char* room,
+                            const char* otherwise) {
     if (worst.samples == 0) return;
-    sentences.push_back(
-        fmt::format("{}: {} at {:.2f} s, where {:.2f} mm are left at the end of its limb (a degree "
-                    "counts {:.1f} mm; {} of {} samples are like this); {}",
-                    what, fmt::join(worst.joints, ", "), worst.time_s, 1e3 * worst.left_m,
-                    DegreeAsMillimetres(worst.arm_m), worst.samples, samples, advice));
+    // Joints of standing legs leave range_deg to keep the balance; the margin is one of turns.
+    const char* with = worst.turns ? "--limit-margin-deg, or for an arm with a narrower "
+                                     "design.range_deg of the project"
+                                   : "a narrower design.range_deg of the project";
+    sentences.push_back(fmt::format(
+        "{}: {} at {:.2f} s, where {:.2f} mm are left at the end of its limb (a degree "
+        "counts {:.1f} mm; {} of {} samples are like this); {} (design and plan again with "
+        "{}){}",
+        what, fmt::join(worst.joints, ", "), worst.time_s, 1e3 * worst.left_m,
+        DegreeAsMillimetres(worst.arm_m), worst.samples, samples, room, with, otherwise));
   };
-  describe(limit_, "stopped by a joint's limit",
-           "plan the motion further from this limit (design and plan with --limit-margin-deg, or "
-           "design.range_deg of the project), or widen it in the URDF if the robot can go on");
+  describe(limit_, "stopped by a joint's limit", "plan the motion further from this limit",
+           ", or widen it in the URDF if the robot can go on");
   describe(correction_,
            "stopped by the limit of a correction (its size, or its change from the last sample)",
-           "plan the limb less stretched and further from limits there (design.range_deg of the "
-           "project keeps an elbow or a knee bent)");
+           "plan the limb less stretched and further from limits there", "");
   return sentences;
 }
 

@@ -28,6 +28,7 @@ class StoppedJoints {
     double left_m = 0.0, time_s = 0.0;     ///< `left_m` is Compensator::left_m
     double arm_m = 0.0;                    ///< ec_tip::arm of the limb where that is left
     std::vector<std::string> joints = {};  ///< joints with their limits
+    bool turns = false;                    ///< one of them turns
   };
   void Look(const Compensator& compensator, double time_s, CompensatorStatus kind, Worst& worst);
   std::string JointAt(const Compensator& compensator, Eigen::Index coordinate) const;

@@ -70,15 +70,20 @@ std::vector<std::string> InertiaWarnings(const RobotTree& tree) {
   const std::string heavy =
       WarnOfHeavyParts(std::accumulate(mass.begin() + 1, mass.end(), 0.0), width);
   if (!heavy.empty()) warnings.push_back(heavy);
-  // A body without a mass may stand between the joints of a shoulder; what it carries weighs.
+  // A body without a mass may stand between the near joints of a shoulder; what it carries weighs.
+  // One as long as a thigh has a mass.
+  constexpr double kNear = 0.05;  // share of the robot's size
   for (int body = tree.body_count() - 1; body > 0; --body) {
-    mass[Size(tree.joints[Size(body - 1)].parent_body)] += mass[Size(body)];
+    const Joint& joint = tree.joints[Size(body - 1)];
+    const Eigen::Vector3d place =
+        tree.links[Size(joint.parent_link)].T_body_link * joint.T_parent_child.translation();
+    if (place.norm() < kNear * width) mass[Size(joint.parent_body)] += mass[Size(body)];
   }
   for (int body = 1; body < tree.body_count(); ++body) {
     if (mass[Size(body)] > 0.0) continue;
     const Link& link = tree.links[Size(tree.joints[Size(body - 1)].child_link)];
     warnings.push_back("link '" + link.name +
-                       "': it has no mass and carries none; statics see no load on its joint");
+                       "': it has no mass, which statics and the simulator need");
   }
   return warnings;
 }

@@ -21,7 +21,7 @@ Eigen::Matrix3d PhysicalInertia(const Eigen::Matrix3d& inertia);
 /// - a link with a mass but without inertia;
 /// - parts that joints move whose mass is so large that it may not be in kg: more than 300 kg per
 ///   m^3 of a cube as wide as the robot;
-/// - no mass on anything that a joint moves.
+/// - no mass on a body that a joint moves, nor on what near joints of this body move.
 /// Only the simulator needs inertias; statics need masses.
 std::vector<std::string> InertiaWarnings(const RobotTree& tree);
 

@@ -66,6 +66,19 @@ TEST(PhysicalInertia, ALinkBetweenTwoJointsNeedsNoMass) {
   EXPECT_TRUE(InertiaWarnings(tree).empty());
 }
 
+// A massive hand does not hide that the upper arm has no mass.
+TEST(PhysicalInertia, ALongLinkNeedsAMass) {
+  RobotTree tree = MakeRoot();
+  const int arm = AddJoint(tree, "shoulder", 0, Offset(0, 0, 1), {0, 1, 0});
+  Link& hand = tree.links[static_cast<std::size_t>(
+      AddJoint(tree, "elbow", arm, Offset(0, 0, -0.4), {0, 1, 0}))];
+  hand.mass = 1.0;
+  hand.inertia = 0.1 * Eigen::Matrix3d::Identity();
+  ASSERT_EQ(InertiaWarnings(tree).size(), 1U);
+  EXPECT_NE(InertiaWarnings(tree)[0].find(tree.links[static_cast<std::size_t>(arm)].name),
+            std::string::npos);
+}
+
 TEST(PhysicalInertia, WarnsOfMassesInGrams) {
   RobotTree tree = MakeRoot();
   Link& link =
