@@ -15,9 +15,8 @@ namespace elastocal {
 std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
                           const CalibrationResult& result, const CalibrationOptions& options);
 
-/// Joints whose estimated gear or lead error is larger than any in a real robot (LeastSize of a
-/// gain: 0.5 %, of a slide 0.2 %), by at least three standard deviations. Such a cause is a wrong
-/// gain in the joint's log.
+/// Joints whose estimated gear or lead error is larger than any in a real robot (0.5 %), by at
+/// least five standard deviations. Such a cause is a wrong gain in the joint's log.
 std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result);
 
 }  // namespace elastocal
