@@ -12,7 +12,6 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/trial_offset.hpp"
-#include "elastocal/recorded/choose_elasticity.hpp"
 #include "elastocal/robot/coordinates.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 
@@ -102,18 +101,18 @@ bool AreGainsOf(const std::vector<RecordingFault>& faults,
   return of_faults == of_gears;
 }
 
-bool MayHideFault(const Project& project, const Recording& recording) {
+bool MayHideFault(const Project& project) {
   if (KnowsRobot(project.calibration.earlier)) return false;
   const ElasticityChoice& own = project.elasticity;
   if (!own.extra.empty()) return project.calibration.extra.automatic;
-  if (!recording.trials.empty() || !HasMasses(project.tree)) return false;
+  if (!own.chosen) return false;
   return own.torsion != AllJoints() || (own.bending && !own.bending->empty());
 }
 
 std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
                                             const Measurements& as_recorded) {
   project.elasticity.extra.clear();
-  if (as_recorded.calibration.trials.empty() && HasMasses(project.tree)) {
+  if (project.elasticity.chosen) {
     project.elasticity.torsion = AllJoints();
     project.elasticity.bending.reset();
   }
@@ -122,7 +121,9 @@ std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::
     const RecordedModel robot = MakeRecordedModel(project, seed, plain, KnockSearch::kNone);
     const CalibrationResult fit = Calibrate(robot.model, plain.calibration, robot.base,
                                             ModelKinds(robot.model).back(), project.calibration);
-    return FindGeneralFault(project, seed, as_recorded, robot, plain.calibration, fit);
+    auto found = FindGeneralFault(project, seed, as_recorded, robot, plain.calibration, fit);
+    if (found) found->without_causes = MarkerError(fit, plain.calibration, project.calibration);
+    return found;
   } catch (const InputError&) {  // fewer equations than the unknowns of a robot with springs
     return std::nullopt;
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -14,6 +15,8 @@ namespace elastocal {
 struct FoundFault : GeneralFault {
   /// From FindTrialOffset: other trials do not tell which trial is wrong.
   bool of_one_trial = false;
+  /// From FindWithoutCauses: error of the robot without causes, the fault not undone, m.
+  double without_causes = std::numeric_limits<double>::infinity();
 };
 
 /// Finds the fault that explains most of what the fit `result` leaves. Several apparent knocks may
@@ -26,11 +29,11 @@ std::optional<FoundFault> FindGeneralFault(const Project& project,
                                            const CalibrationResult& result);
 
 /// Whether data that have a fault may have chosen what hides it: causes or, in a table, which
-/// joints give way and how.
-bool MayHideFault(const Project& project, const Recording& recording);
+/// joints give way and how. What the project states hides nothing.
+bool MayHideFault(const Project& project);
 
-/// Finds the fault of a robot without the causes that it seemed to have. In a table all its joints
-/// are elastic about their axes.
+/// Finds the fault of a robot without the causes that it seemed to have. Where the data chose the
+/// springs, all its joints are elastic about their axes.
 std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
                                             const Measurements& as_recorded);
 

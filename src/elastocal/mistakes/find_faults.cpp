@@ -35,7 +35,7 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeftByOdd = 0.5;  // share of the error of a fit, without them
-// Share of the error of a fit that treats wrong gains as gears.
+// Share of the error of a fit that has no faults, but for instance gears instead of wrong gains.
 constexpr double kLeftBesideGears = 0.8;
 constexpr double kAsWellByFewer = 1.1;  // ratio to the error of a fit with more parameters
 
@@ -212,7 +212,7 @@ class FaultsInTurn {
   /// Finds faults of joints and others that displace several clusters; the search is made once.
   void Look() {
     if (few_) return;
-    if (!gears_.empty() || MayHideFault(project_, recording_)) {
+    if (!gears_.empty() || MayHideFault(project_)) {
       Explain(FindWithoutCauses(project_, seed_, as_recorded_));
       if (!gears_.empty() || IsFaultInstead()) return;
     }
@@ -220,12 +220,13 @@ class FaultsInTurn {
   }
 
   /// Whether few faults explain the recording instead of what the data have chosen: far better, or
-  /// as well with fewer parameters.
+  /// as well with fewer parameters. The faults have to explain it, not the springs beside them.
   bool IsFaultInstead() const {
     const bool like_play = std::ranges::any_of(few_->faults, [](const RecordingFault& fault) {
       return fault.kind == FaultKind::kUnfinished || fault.kind == FaultKind::kJointLag;
     });
     if (!few_->complete || like_play) return false;
+    if (!(few_->left < kLeftBesideGears * found_->without_causes)) return false;
     if (few_->left < kLeftBesideGears * left_) return true;
     const auto& bending = project_.elasticity.bending;
     const bool bends = bending && !bending->empty() && project_.elasticity.extra.empty();

@@ -63,6 +63,7 @@ struct ElasticityChoice {
   bool root_bending = true;
   bool base = true;          ///< legs that stand alone in a trial: lumped compliance, eq. 6
   bool torque_bias = false;  ///< biases of the torque sensors of these legs
+  bool chosen = false;       ///< the data chose torsion and bending, which the project leaves open
   /// Causes beyond springs that the model has (chosen as `calibration.extra` says), and the mean
   /// time of the postures, h, if they have times.
   std::vector<std::string> extra = {};
