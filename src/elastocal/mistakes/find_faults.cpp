@@ -37,7 +37,6 @@ namespace {
 constexpr double kLeftByOdd = 0.5;  // share of the error of a fit, without them
 // Share of the error of a fit that has no faults, but for instance gears instead of wrong gains.
 constexpr double kLeftBesideGears = 0.8;
-constexpr double kAsWellByFewer = 1.1;  // ratio to the error of a fit with more parameters
 
 bool IsFarOff(const std::vector<RecordingFault>& gears) {
   constexpr double kFarOffGear = 0.1;  // beyond this, a linear estimate is invalid
@@ -220,7 +219,8 @@ class FaultsInTurn {
   }
 
   /// Whether few faults explain the recording instead of what the data have chosen: far better, or
-  /// as well with fewer parameters. The faults have to explain it, not the springs beside them.
+  /// better than bending joints with fewer parameters, or as well as causes of no robot. The faults
+  /// have to explain it, not the springs beside them.
   bool IsFaultInstead() const {
     const bool like_play = std::ranges::any_of(few_->faults, [](const RecordingFault& fault) {
       return fault.kind == FaultKind::kUnfinished || fault.kind == FaultKind::kJointLag;
@@ -228,9 +228,9 @@ class FaultsInTurn {
     if (!few_->complete || like_play) return false;
     if (!(few_->left < kLeftBesideGears * found_->without_causes)) return false;
     if (few_->left < kLeftBesideGears * left_) return true;
-    const auto& bending = project_.elasticity.bending;
-    const bool bends = bending && !bending->empty() && project_.elasticity.extra.empty();
-    if (bends && few_->left < kAsWellByFewer * left_) return true;
+    const ElasticityChoice& own = project_.elasticity;
+    const bool bends = own.chosen && own.bending && !own.bending->empty() && own.extra.empty();
+    if (bends && few_->left < left_) return true;
     return ReplaceCauses(few_->faults, project_, seed_, as_recorded_, fit(), left_);
   }
 
