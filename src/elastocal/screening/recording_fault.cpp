@@ -7,11 +7,14 @@
 #include <limits>
 
 #include "elastocal/measurement/describe_posture.hpp"
+#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/robot/move_motors.hpp"
 
 namespace elastocal {
 
 namespace {
+
+constexpr const char* kPushed = ", or the tracker or the base was pushed";
 
 /// Velocity of an entry of q in a posture of a motion, by the postures before and after, rad/s or
 /// m/s; else 0.
@@ -201,6 +204,30 @@ Recording WithoutFault(const Recording& recording, const RecordingFault& fault) 
   return without;
 }
 
+void PreferSlides(const RobotTree& tree, std::vector<RecordingFault>& faults) {
+  constexpr double kAsMuch = 0.95;
+  const std::vector<RecordingFault> all = faults;
+  const auto slides = [&](const RecordingFault& one) {
+    return one.kind == FaultKind::kJointOffset && one.linkage < 0 &&
+           JointOfCoordinate(tree, one.coordinate).type == JointType::kPrismatic;
+  };
+  const auto shifts = [](const RecordingFault& one) { return one.kind == FaultKind::kFrameShift; };
+  const auto explains_as_much = [](const RecordingFault& one, const RecordingFault& other) {
+    return one.posture == other.posture && one.end == other.end &&
+           one.share >= kAsMuch * other.share;
+  };
+  for (RecordingFault& joint : faults) {
+    joint.or_shift = slides(joint) && std::ranges::any_of(all, [&](const RecordingFault& one) {
+                       return shifts(one) && explains_as_much(one, joint);
+                     });
+  }
+  std::erase_if(faults, [&](const RecordingFault& shift) {
+    return shifts(shift) && std::ranges::any_of(all, [&](const RecordingFault& one) {
+             return slides(one) && explains_as_much(one, shift);
+           });
+  });
+}
+
 bool IsInPartOfTrial(const RecordingFault& fault, const Recording& recording) {
   return fault.trial >= 0 && fault.posture > 0 &&
          recording.trial[fault.posture - 1] == recording.trial[fault.posture];
@@ -278,12 +305,13 @@ std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
     return text + " from " + DescribePosture(recording, fault.posture) + " to the end of the trial";
   }
   if (fault.end > 0) {
-    return text + " from " + DescribePosture(recording, fault.posture) + " to " +
-           DescribePosture(recording, fault.end - 1);
+    text += " from " + DescribePosture(recording, fault.posture) + " to " +
+            DescribePosture(recording, fault.end - 1);
+    return fault.or_shift ? text + kPushed : text;
   }
   if (fault.trial >= 0) return text + " in trial " + recording.trials[fault.trial].name;
-  return fault.posture > 0 ? text + " from " + DescribePosture(recording, fault.posture) + " on"
-                           : text;
+  if (fault.posture > 0) text += " from " + DescribePosture(recording, fault.posture) + " on";
+  return fault.or_shift ? text + kPushed : text;
 }
 
 }  // namespace elastocal

@@ -42,8 +42,9 @@ struct RecordingFault {
   int linkage = -1;
   /// In a table, or of a drift: the posture after the last one with it; 0: to the end.
   int end = 0;
-  int axis = -1;     ///< axis of the cameras' frame: 0, 1 or 2
-  int by_axis = -1;  ///< of a shear: axis whose coordinate displaces those along `axis`
+  int axis = -1;          ///< axis of the cameras' frame: 0, 1 or 2
+  int by_axis = -1;       ///< of a shear: axis whose coordinate displaces those along `axis`
+  bool or_shift = false;  ///< of a sliding joint's offset: a shift of the frame explains as much
 };
 
 /// Factor of a fault's size in a posture: of a gain, the position.
@@ -86,6 +87,11 @@ Eigen::MatrixXd CameraDisplacements(const RecordingFault& fault, const Recording
 
 /// The recording with the fault corrected. Not for motors of rods.
 Recording WithoutFault(const Recording& recording, const RecordingFault& fault);
+
+/// Leaves out displacements of the frame of which offsets of sliding joints in the same postures
+/// explain at least 95 %. Along the joint they are the same, and the joint's can be corrected.
+/// Marks offsets of which a displacement explains as much.
+void PreferSlides(const RobotTree& tree, std::vector<RecordingFault>& faults);
 
 /// Whether the fault extends from a posture to the end of its trial, as if an encoder was homed
 /// anew after the trial.

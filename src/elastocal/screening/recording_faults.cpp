@@ -79,6 +79,7 @@ class FaultSearch {
     const RecordingFault unfinished{.kind = FaultKind::kUnfinished};  // all joints, at rest later
     Try(equations, covariance, DerivativeOf(unfinished), {MakeTrial(unfinished)}, false);
     TryScale(equations, covariance);
+    PreferSlides(result.model.tree, found_);
     std::ranges::stable_sort(found_, std::greater(), &RecordingFault::share);
   }
 
