@@ -147,6 +147,21 @@ TEST_F(MeasuredTiago, APushedTrackerIsNamed) {
   EXPECT_TRUE(Says(FirstFault(run), "pushed")) << FirstFault(run);
 }
 
+TEST_F(MeasuredTiago, ATrackerThatWasPushedAlongTwoAxesIsOneSentence) {
+  const CalibrationRun run = Run([](NumberTable& table) {
+    for (std::size_t i = 18; i < table.rows.size(); ++i) {
+      for (std::size_t m = 0; m < 4; ++m) {
+        table.rows[i][3 * m] += 0.015;
+        table.rows[i][3 * m + 1] -= 0.015;
+      }
+    }
+  });
+  const std::string said = FirstFault(run);
+  EXPECT_TRUE(Says(said, "the frame of the markers lies ")) << said;
+  EXPECT_TRUE(Says(said, "elsewhere along ") && Says(said, " mm along ")) << said;
+  EXPECT_EQ(said.find("pushed"), said.rfind("pushed")) << said;
+}
+
 // The lift is as likely. A correction of it has a name.
 TEST_F(MeasuredTiago, ATrackerThatWasPushedUpMayBeTheLift) {
   const CalibrationRun run = Run([](NumberTable& table) {

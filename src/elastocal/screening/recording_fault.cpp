@@ -39,16 +39,6 @@ bool IsReached(const Recording& recording, int posture) {
   return recording.trial[posture - 1] == trial && !recording.trials[trial].of_motion();
 }
 
-std::string DescribeShift(const RecordingFault& fault, const Recording& recording) {
-  char sentence[200];
-  std::snprintf(sentence, sizeof sentence,
-                "the frame of the markers lies %.2f +- %.2f mm elsewhere along %c from %s ",
-                1e3 * fault.size, 1e3 * fault.sd, "xyz"[fault.axis],
-                DescribePosture(recording, fault.posture).c_str());
-  const std::string end = fault.end > 0 ? "to " + DescribePosture(recording, fault.end - 1) : "on";
-  return sentence + end + " (the tracker or the base was pushed?)";
-}
-
 }  // namespace
 
 double LeastSize(FaultKind kind, bool slides) {
@@ -233,6 +223,21 @@ bool IsInPartOfTrial(const RecordingFault& fault, const Recording& recording) {
          recording.trial[fault.posture - 1] == recording.trial[fault.posture];
 }
 
+std::string DescribeShifts(const std::vector<RecordingFault>& shifts, const Recording& recording) {
+  std::string text = "the frame of the markers lies";
+  for (const RecordingFault& shift : shifts) {
+    const bool first = &shift == &shifts.front();
+    char along[80];
+    std::snprintf(along, sizeof along, "%s %.2f +- %.2f mm%s along %c", first ? "" : " and",
+                  1e3 * shift.size, 1e3 * shift.sd, first ? " elsewhere" : "", "xyz"[shift.axis]);
+    text += along;
+  }
+  const RecordingFault& of = shifts.front();
+  text += " from " + DescribePosture(recording, of.posture);
+  text += of.end > 0 ? " to " + DescribePosture(recording, of.end - 1) : " on";
+  return text + " (the tracker or the base was pushed?)";
+}
+
 std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
                           const Recording& recording) {
   if (fault.kind == FaultKind::kCameraAxis) {
@@ -270,7 +275,7 @@ std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
     }
     return sentence;
   }
-  if (fault.kind == FaultKind::kFrameShift) return DescribeShift(fault, recording);
+  if (fault.kind == FaultKind::kFrameShift) return DescribeShifts({fault}, recording);
   const bool joint = fault.kind != FaultKind::kCameraScale;
   const LoggedPosition of = joint ? LoggedPositionOf(tree, fault.linkage, fault.coordinate)
                                   : LoggedPosition{"camera positions"};

@@ -97,6 +97,11 @@ void PreferSlides(const RobotTree& tree, std::vector<RecordingFault>& faults);
 /// anew after the trial.
 bool IsInPartOfTrial(const RecordingFault& fault, const Recording& recording);
 
+/// Text such as "the frame of the markers lies 10.1 +- 0.8 mm elsewhere along x and 5.0 +- 0.7 mm
+/// along y from posture 19 on (the tracker or the base was pushed?)", of displacements along
+/// different axes in the same postures.
+std::string DescribeShifts(const std::vector<RecordingFault>& shifts, const Recording& recording);
+
 /// Text such as "arm_left_4_joint: its positions are off by 1.02 +- 0.03 deg from trial b, posture
 /// 1 on".
 std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
