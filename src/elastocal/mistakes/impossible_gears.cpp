@@ -39,7 +39,7 @@ std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
         1.0 + size, sd, joints, accept);
   }
   const auto scale = EstimateCommonScale(result, options);
-  if (!scale || std::abs(scale->size - size) > kConsistent * scale->sd ||
+  if (!scale || scale->of_one_length || std::abs(scale->size - size) > kConsistent * scale->sd ||
       std::abs(scale->size) < kPlain * scale->sd) {
     return "";
   }

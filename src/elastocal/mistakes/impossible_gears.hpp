@@ -11,7 +11,7 @@ namespace elastocal {
 
 /// Gains of prismatic joints look like a wrong scale of the cameras. Several similar ones are
 /// described as one scale; where the other lengths agree with a single one, both explanations are
-/// given. Empty for other faults.
+/// given. Empty for other faults, and where one length alone makes the scale.
 std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
                           const CalibrationResult& result, const CalibrationOptions& options);
 
