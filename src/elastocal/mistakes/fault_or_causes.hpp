@@ -21,7 +21,8 @@ struct FoundFault : GeneralFault {
 
 /// Finds the fault that explains most of what the fit `result` leaves. Several apparent knocks may
 /// be one fault that displaces all these clusters, which is therefore also searched for without the
-/// knocks. `as_recorded` is the recording before markers were split at knocks.
+/// knocks; not in a table, where distances within a cluster tell a marker that was glued on again.
+/// `as_recorded` is the recording before markers were split at knocks.
 std::optional<FoundFault> FindGeneralFault(const Project& project,
                                            std::optional<std::uint64_t> seed,
                                            Measurements as_recorded, const RecordedModel& robot,
