@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/mistakes/fault_or_causes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
@@ -45,9 +46,15 @@ std::vector<RecordingFault> ProvedFaults(const CalibrationResult& result,
                                          const BaseParameters& base, const Recording& recording,
                                          const CalibrationOptions& options) {
   constexpr double kLeftOfProved = 0.5;
-  std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, options);
-  if (!faults.empty()) return faults;
-  faults = FindRecordingFaults(result, recording, options, Certainty::kSuspected);
+  // What is certain is suspected as well, so that a clean recording is searched once. The search
+  // for suspected faults looks more closely where one is, and so may find others that are certain.
+  std::vector<RecordingFault> faults =
+      FindRecordingFaults(result, recording, options, Certainty::kSuspected);
+  const auto is_certain = [](const RecordingFault& one) { return IsCertain(one); };
+  if (std::ranges::any_of(faults, is_certain)) {
+    std::vector<RecordingFault> certain = FindRecordingFaults(result, recording, options);
+    if (!certain.empty()) return certain;
+  }
   if (faults.empty() || faults.front().linkage >= 0) return {};
   faults.resize(1);
   const Recording without = WithoutFault(recording, faults.front());
