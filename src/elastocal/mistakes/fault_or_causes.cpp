@@ -114,18 +114,18 @@ bool AreGainsOf(const std::vector<RecordingFault>& faults,
   return of_faults == of_gears;
 }
 
-bool MayHideFault(const Project& project) {
+bool MayHideFault(const Project& project, bool springs_by_data) {
   if (KnowsRobot(project.calibration.earlier)) return false;
   const ElasticityChoice& own = project.elasticity;
   if (!own.extra.empty()) return project.calibration.extra.automatic;
-  if (!own.chosen) return false;
+  if (!springs_by_data) return false;
   return own.torsion != AllJoints() || (own.bending && !own.bending->empty());
 }
 
 std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
-                                            const Measurements& as_recorded) {
+                                            const Measurements& as_recorded, bool springs_by_data) {
   project.elasticity.extra.clear();
-  if (project.elasticity.chosen) {
+  if (springs_by_data) {
     project.elasticity.torsion = AllJoints();
     project.elasticity.bending.reset();
   }

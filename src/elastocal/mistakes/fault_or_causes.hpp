@@ -31,12 +31,12 @@ std::optional<FoundFault> FindGeneralFault(const Project& project,
 
 /// Whether data that have a fault may have chosen what hides it: causes or, in a table, which
 /// joints give way and how. What the project states hides nothing.
-bool MayHideFault(const Project& project);
+bool MayHideFault(const Project& project, bool springs_by_data);
 
 /// Finds the fault of a robot without the causes that it seemed to have. Where the data chose the
 /// springs, all its joints are elastic about their axes.
 std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
-                                            const Measurements& as_recorded);
+                                            const Measurements& as_recorded, bool springs_by_data);
 
 /// Whether faults of joints explain a recording as well as the causes that these joints have in the
 /// fit `with`: an eccentricity and an ellipticity together look like a gain. Causes of this size

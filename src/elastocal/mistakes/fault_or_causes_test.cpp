@@ -13,15 +13,14 @@ namespace {
 TEST(FaultOrCauses, WhatTheProjectStatesHidesNoFault) {
   using Patterns = std::vector<std::string>;
   Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
-  EXPECT_FALSE(MayHideFault(project));
+  EXPECT_FALSE(MayHideFault(project, false));
   project.elasticity.torsion = Patterns();
   project.elasticity.bending = Patterns{"*"};
-  EXPECT_FALSE(MayHideFault(project));
-  project.elasticity.chosen = true;
-  EXPECT_TRUE(MayHideFault(project));
+  EXPECT_FALSE(MayHideFault(project, false));
+  EXPECT_TRUE(MayHideFault(project, true));
   project.elasticity.torsion = Patterns{"*"};
   project.elasticity.bending = Patterns();
-  EXPECT_FALSE(MayHideFault(project));
+  EXPECT_FALSE(MayHideFault(project, true));
 }
 
 }  // namespace

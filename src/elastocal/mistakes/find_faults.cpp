@@ -120,13 +120,14 @@ class FaultsInTurn {
  public:
   FaultsInTurn(const Project& project, std::optional<std::uint64_t> seed,
                const Measurements& as_recorded, const RecordedModel& robot,
-               const Recording& recording, const ModelComparison& comparison)
+               const Recording& recording, const ModelComparison& comparison, bool springs_by_data)
       : project_(project),
         seed_(seed),
         as_recorded_(as_recorded),
         robot_(robot),
         recording_(recording),
         comparison_(comparison),
+        springs_by_data_(springs_by_data),
         gears_(FindImpossibleGears(comparison.largest())),
         of_slides_(ScaleOfSlides(gears_, comparison.largest(), project.calibration)),
         // With a correct scale, a robot whose lengths are all off has another size.
@@ -211,8 +212,8 @@ class FaultsInTurn {
   /// Finds faults of joints and others that displace several clusters; the search is made once.
   void Look() {
     if (few_) return;
-    if (!gears_.empty() || MayHideFault(project_)) {
-      Explain(FindWithoutCauses(project_, seed_, as_recorded_));
+    if (!gears_.empty() || MayHideFault(project_, springs_by_data_)) {
+      Explain(FindWithoutCauses(project_, seed_, as_recorded_, springs_by_data_));
       if (!gears_.empty() || IsFaultInstead()) return;
     }
     Explain(General());
@@ -229,7 +230,8 @@ class FaultsInTurn {
     if (!(few_->left < kLeftBesideGears * found_->without_causes)) return false;
     if (few_->left < kLeftBesideGears * left_) return true;
     const ElasticityChoice& own = project_.elasticity;
-    const bool bends = own.chosen && own.bending && !own.bending->empty() && own.extra.empty();
+    const bool bends =
+        springs_by_data_ && own.bending && !own.bending->empty() && own.extra.empty();
     if (bends && few_->left < left_) return true;
     return ReplaceCauses(few_->faults, project_, seed_, as_recorded_, fit(), left_);
   }
@@ -329,6 +331,7 @@ class FaultsInTurn {
   const RecordedModel& robot_;
   const Recording& recording_;
   const ModelComparison& comparison_;
+  bool springs_by_data_;
   std::vector<RecordingFault> gears_;
   std::string of_slides_;
   bool scale_is_known_;
@@ -348,8 +351,10 @@ bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
 
 std::vector<std::string> FindFaults(const Project& project, std::optional<std::uint64_t> seed,
                                     const Measurements& as_recorded, const RecordedModel& robot,
-                                    const Recording& recording, const ModelComparison& comparison) {
-  return FaultsInTurn(project, seed, as_recorded, robot, recording, comparison).Run();
+                                    const Recording& recording, const ModelComparison& comparison,
+                                    bool springs_by_data) {
+  return FaultsInTurn(project, seed, as_recorded, robot, recording, comparison, springs_by_data)
+      .Run();
 }
 
 }  // namespace elastocal

@@ -63,7 +63,6 @@ struct ElasticityChoice {
   bool root_bending = true;
   bool base = true;          ///< legs that stand alone in a trial: lumped compliance, eq. 6
   bool torque_bias = false;  ///< biases of the torque sensors of these legs
-  bool chosen = false;       ///< the data chose torsion and bending, which the project leaves open
   /// Causes beyond springs that the model has (chosen as `calibration.extra` says), and the mean
   /// time of the postures, h, if they have times.
   std::vector<std::string> extra = {};
@@ -164,8 +163,7 @@ int FindChain(const Project& project, const std::string& name);
 int FindCluster(const Project& project, const std::string& name);
 
 /// The project's clusters, and those that single markers on the same link form: they keep their
-/// distances as well. These have the name of the link, with "_single" where another cluster has
-/// that name.
+/// distances as well. These have the name of the link.
 std::vector<MarkerCluster> RigidClusters(const Project& project);
 
 /// Markers carried by the links of a chain, beyond its `from` link up to and including its tip.

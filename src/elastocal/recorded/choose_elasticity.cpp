@@ -110,7 +110,6 @@ std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
     tried.push_back(std::move(*trial));
   }
   tried[chosen].chosen = true;
-  project.elasticity.chosen = true;
   project.elasticity.torsion = candidates[chosen].torsion;
   project.elasticity.bending = candidates[chosen].bending;
   return tried;
