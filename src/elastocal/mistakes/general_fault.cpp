@@ -23,6 +23,7 @@
 #include "elastocal/recorded/find_base.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/robot/move_motors.hpp"
+#include "elastocal/screening/frame_shifts.hpp"
 #include "elastocal/screening/measured_faults.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 
@@ -121,7 +122,8 @@ class FaultExplanation {
 
   static bool IsSame(const RecordingFault& a, const RecordingFault& b) {
     return a.kind == b.kind && a.coordinate == b.coordinate && a.trial == b.trial &&
-           a.posture == b.posture && a.end == b.end && a.axis == b.axis && a.by_axis == b.by_axis;
+           a.posture == b.posture && a.end == b.end && a.by_axis == b.by_axis &&
+           (a.axis == b.axis || a.kind == FaultKind::kJointOffset);
   }
 
   static double Sum(const RecordingFault& fault, double more) {

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "elastocal/measurement/describe_posture.hpp"
-#include "elastocal/robot/coordinates.hpp"
 #include "elastocal/robot/move_motors.hpp"
+#include "elastocal/screening/frame_shifts.hpp"
 
 namespace elastocal {
 
@@ -194,48 +194,9 @@ Recording WithoutFault(const Recording& recording, const RecordingFault& fault) 
   return without;
 }
 
-void PreferSlides(const RobotTree& tree, std::vector<RecordingFault>& faults) {
-  constexpr double kAsMuch = 0.95;
-  const std::vector<RecordingFault> all = faults;
-  const auto slides = [&](const RecordingFault& one) {
-    return one.kind == FaultKind::kJointOffset && one.linkage < 0 &&
-           JointOfCoordinate(tree, one.coordinate).type == JointType::kPrismatic;
-  };
-  const auto shifts = [](const RecordingFault& one) { return one.kind == FaultKind::kFrameShift; };
-  const auto explains_as_much = [](const RecordingFault& one, const RecordingFault& other) {
-    return one.posture == other.posture && one.end == other.end &&
-           one.share >= kAsMuch * other.share;
-  };
-  for (RecordingFault& joint : faults) {
-    joint.or_shift = slides(joint) && std::ranges::any_of(all, [&](const RecordingFault& one) {
-                       return shifts(one) && explains_as_much(one, joint);
-                     });
-  }
-  std::erase_if(faults, [&](const RecordingFault& shift) {
-    return shifts(shift) && std::ranges::any_of(all, [&](const RecordingFault& one) {
-             return slides(one) && explains_as_much(one, shift);
-           });
-  });
-}
-
 bool IsInPartOfTrial(const RecordingFault& fault, const Recording& recording) {
   return fault.trial >= 0 && fault.posture > 0 &&
          recording.trial[fault.posture - 1] == recording.trial[fault.posture];
-}
-
-std::string DescribeShifts(const std::vector<RecordingFault>& shifts, const Recording& recording) {
-  std::string text = "the frame of the markers lies";
-  for (const RecordingFault& shift : shifts) {
-    const bool first = &shift == &shifts.front();
-    char along[80];
-    std::snprintf(along, sizeof along, "%s %.2f +- %.2f mm%s along %c", first ? "" : " and",
-                  1e3 * shift.size, 1e3 * shift.sd, first ? " elsewhere" : "", "xyz"[shift.axis]);
-    text += along;
-  }
-  const RecordingFault& of = shifts.front();
-  text += " from " + DescribePosture(recording, of.posture);
-  text += of.end > 0 ? " to " + DescribePosture(recording, of.end - 1) : " on";
-  return text + " (the tracker or the base was pushed?)";
 }
 
 std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
@@ -312,11 +273,11 @@ std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
   if (fault.end > 0) {
     text += " from " + DescribePosture(recording, fault.posture) + " to " +
             DescribePosture(recording, fault.end - 1);
-    return fault.or_shift ? text + kPushed : text;
+    return MayBeShift(fault) ? text + kPushed : text;
   }
   if (fault.trial >= 0) return text + " in trial " + recording.trials[fault.trial].name;
   if (fault.posture > 0) text += " from " + DescribePosture(recording, fault.posture) + " on";
-  return fault.or_shift ? text + kPushed : text;
+  return MayBeShift(fault) ? text + kPushed : text;
 }
 
 }  // namespace elastocal

@@ -42,9 +42,8 @@ struct RecordingFault {
   int linkage = -1;
   /// In a table, or of a drift: the posture after the last one with it; 0: to the end.
   int end = 0;
-  int axis = -1;          ///< axis of the cameras' frame: 0, 1 or 2
-  int by_axis = -1;       ///< of a shear: axis whose coordinate displaces those along `axis`
-  bool or_shift = false;  ///< of a sliding joint's offset: a shift of the frame explains as much
+  int axis = -1;     ///< axis of the cameras' frame: 0, 1 or 2
+  int by_axis = -1;  ///< of a shear: axis whose coordinate displaces those along `axis`
 };
 
 /// Factor of a fault's size in a posture: of a gain, the position.
@@ -88,19 +87,9 @@ Eigen::MatrixXd CameraDisplacements(const RecordingFault& fault, const Recording
 /// The recording with the fault corrected. Not for motors of rods.
 Recording WithoutFault(const Recording& recording, const RecordingFault& fault);
 
-/// Leaves out displacements of the frame of which offsets of sliding joints in the same postures
-/// explain at least 95 %. Along the joint they are the same, and the joint's can be corrected.
-/// Marks offsets of which a displacement explains as much.
-void PreferSlides(const RobotTree& tree, std::vector<RecordingFault>& faults);
-
 /// Whether the fault extends from a posture to the end of its trial, as if an encoder was homed
 /// anew after the trial.
 bool IsInPartOfTrial(const RecordingFault& fault, const Recording& recording);
-
-/// Text such as "the frame of the markers lies 10.1 +- 0.8 mm elsewhere along x and 5.0 +- 0.7 mm
-/// along y from posture 19 on (the tracker or the base was pushed?)", of displacements along
-/// different axes in the same postures.
-std::string DescribeShifts(const std::vector<RecordingFault>& shifts, const Recording& recording);
 
 /// Text such as "arm_left_4_joint: its positions are off by 1.02 +- 0.03 deg from trial b, posture
 /// 1 on".
