@@ -147,6 +147,34 @@ TEST_F(MeasuredTiago, APushedTrackerIsNamed) {
   EXPECT_TRUE(Says(FirstFault(run), "pushed")) << FirstFault(run);
 }
 
+TEST_F(MeasuredTiago, ATrackerThatWasPushedAlongTwoAxesIsOneSentence) {
+  const CalibrationRun run = Run([](NumberTable& table) {
+    for (std::size_t i = 18; i < table.rows.size(); ++i) {
+      for (std::size_t m = 0; m < 4; ++m) {
+        table.rows[i][3 * m] += 0.015;
+        table.rows[i][3 * m + 1] -= 0.015;
+      }
+    }
+  });
+  const std::string said = FirstFault(run);
+  EXPECT_TRUE(Says(said, "the frame of the markers lies ")) << said;
+  EXPECT_TRUE(Says(said, "elsewhere along ") && Says(said, " mm along ")) << said;
+  EXPECT_EQ(said.find("pushed"), said.rfind("pushed")) << said;
+}
+
+// The lift is as likely. A correction of it has a name.
+TEST_F(MeasuredTiago, ATrackerThatWasPushedUpMayBeTheLift) {
+  const CalibrationRun run = Run([](NumberTable& table) {
+    for (std::size_t i = 18; i < table.rows.size(); ++i) {
+      for (std::size_t m = 0; m < 4; ++m) table.rows[i][3 * m + 2] += 0.01;
+    }
+  });
+  const std::string said = FirstFault(run);
+  EXPECT_TRUE(Says(said, "torso_lift_joint: its positions are off by ")) << said;
+  EXPECT_TRUE(Says(said, "or the tracker or the base was pushed")) << said;
+  EXPECT_TRUE(Says(said, "--accept offset:torso_lift_joint:19=")) << said;
+}
+
 // The data choose a gear and an eccentricity, which together are almost such a gain.
 TEST_F(MeasuredTiago, AGainThatCausesExplainIsNamed) {
   const CalibrationRun run = Run(

@@ -288,10 +288,13 @@ std::vector<int> TrialMarkers(const Project& project, const TrialFiles& trial) {
 }
 
 MarkedRobot MakeMarkedRobot(const Project& project) {
+  constexpr std::size_t kFewestOfCluster = 3;
   MarkedRobot robot;
   robot.tree = project.tree;
   robot.markers = project.markers;
   for (const MarkerCluster& cluster : RigidClusters(project)) {
+    // A pair does not tell which of its labels is wrong.
+    if (cluster.markers.size() < kFewestOfCluster) continue;
     robot.clusters.push_back({cluster.name, cluster.markers});
   }
   robot.torque_sensors = project.torque_sensors;

@@ -53,6 +53,20 @@ Eigen::Vector3d Expected(const Project& project, const Recording& recording, int
   throw std::logic_error("no such marker");
 }
 
+TEST_F(RecordingFolderTest, CorrectsNoLabelsOfPairs) {
+  const std::size_t before = MakeMarkedRobot(project_).clusters.size();
+  EXPECT_EQ(before, project_.clusters.size());
+  Marker one = project_.markers.front();
+  for (const char* name : {"P", "Q"}) {
+    one.name = name;
+    project_.markers.push_back(one);
+  }
+  EXPECT_EQ(MakeMarkedRobot(project_).clusters.size(), before);
+  one.name = "R";
+  project_.markers.push_back(one);
+  EXPECT_EQ(MakeMarkedRobot(project_).clusters.size(), before + 1);
+}
+
 TEST_F(RecordingFolderTest, KeepsValidationApart) {
   project_.torque_sensors = {FindJoint(project_.tree, "left_knee_pitch")};
   Write("a", {.postures = 12, .lag_s = 3.0});

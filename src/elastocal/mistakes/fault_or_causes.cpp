@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/mistakes/fault_or_causes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
@@ -12,7 +13,6 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/trial_offset.hpp"
-#include "elastocal/recorded/choose_elasticity.hpp"
 #include "elastocal/robot/coordinates.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 
@@ -20,6 +20,12 @@ namespace elastocal {
 namespace {
 
 std::vector<std::string> AllJoints() { return {"*"}; }
+
+/// In a table, distances within a cluster tell a marker that was glued on again, whatever else is
+/// wrong. In trials, a fault of a joint looks like knocks.
+KnockSearch PlainKnocks(const Recording& recording) {
+  return recording.trials.empty() ? KnockSearch::kAll : KnockSearch::kNone;
+}
 
 /// Whether any of these causes is estimated five times as large as a robot's typically are.
 bool AreOfNoRobot(const std::set<std::string>& causes, const CalibrationResult& result) {
@@ -40,9 +46,15 @@ std::vector<RecordingFault> ProvedFaults(const CalibrationResult& result,
                                          const BaseParameters& base, const Recording& recording,
                                          const CalibrationOptions& options) {
   constexpr double kLeftOfProved = 0.5;
-  std::vector<RecordingFault> faults = FindRecordingFaults(result, recording, options);
-  if (!faults.empty()) return faults;
-  faults = FindRecordingFaults(result, recording, options, Certainty::kSuspected);
+  // What is certain is suspected as well, so that a clean recording is searched once. The search
+  // for suspected faults looks more closely where one is, and so may find others that are certain.
+  std::vector<RecordingFault> faults =
+      FindRecordingFaults(result, recording, options, Certainty::kSuspected);
+  const auto is_certain = [](const RecordingFault& one) { return IsCertain(one); };
+  if (std::ranges::any_of(faults, is_certain)) {
+    std::vector<RecordingFault> certain = FindRecordingFaults(result, recording, options);
+    if (!certain.empty()) return certain;
+  }
   if (faults.empty() || faults.front().linkage >= 0) return {};
   faults.resize(1);
   const Recording without = WithoutFault(recording, faults.front());
@@ -64,7 +76,7 @@ std::optional<FoundFault> FindGeneralFault(const Project& project,
                        options, as_recorded.validation};
   std::vector<RecordingFault> faults = ProvedFaults(result, robot.base, recording, options);
   std::optional<RecordingFault> hidden;
-  if (robot.knocks.empty()) {
+  if (robot.knocks.empty() || recording.trials.empty()) {
     if (faults.empty()) {
       hidden = FindTrialOffset(result, robot.base, recording, options, general.held_out);
     }
@@ -102,27 +114,30 @@ bool AreGainsOf(const std::vector<RecordingFault>& faults,
   return of_faults == of_gears;
 }
 
-bool MayHideFault(const Project& project, const Recording& recording) {
+bool MayHideFault(const Project& project, bool springs_by_data) {
   if (KnowsRobot(project.calibration.earlier)) return false;
   const ElasticityChoice& own = project.elasticity;
   if (!own.extra.empty()) return project.calibration.extra.automatic;
-  if (!recording.trials.empty() || !HasMasses(project.tree)) return false;
+  if (!springs_by_data) return false;
   return own.torsion != AllJoints() || (own.bending && !own.bending->empty());
 }
 
 std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
-                                            const Measurements& as_recorded) {
+                                            const Measurements& as_recorded, bool springs_by_data) {
   project.elasticity.extra.clear();
-  if (as_recorded.calibration.trials.empty() && HasMasses(project.tree)) {
+  if (springs_by_data) {
     project.elasticity.torsion = AllJoints();
     project.elasticity.bending.reset();
   }
   try {
     Measurements plain = as_recorded;
-    const RecordedModel robot = MakeRecordedModel(project, seed, plain, KnockSearch::kNone);
+    const RecordedModel robot =
+        MakeRecordedModel(project, seed, plain, PlainKnocks(plain.calibration));
     const CalibrationResult fit = Calibrate(robot.model, plain.calibration, robot.base,
                                             ModelKinds(robot.model).back(), project.calibration);
-    return FindGeneralFault(project, seed, as_recorded, robot, plain.calibration, fit);
+    auto found = FindGeneralFault(project, seed, as_recorded, robot, plain.calibration, fit);
+    if (found) found->without_causes = MarkerError(fit, plain.calibration, project.calibration);
+    return found;
   } catch (const InputError&) {  // fewer equations than the unknowns of a robot with springs
     return std::nullopt;
   }
@@ -140,17 +155,23 @@ bool ReplaceCauses(const std::vector<RecordingFault>& faults, Project project,
     if (!of_joint || fault.coordinate < 0 || fault.linkage >= 0) return false;
     const std::string& joint = JointOfCoordinate(project.tree, fault.coordinate).name;
     for (const std::string& cause : project.elasticity.extra) {
-      if (cause.starts_with(joint + ".") || cause.ends_with("_" + joint)) removed.insert(cause);
+      const bool of = cause.starts_with(joint + ".") || cause.ends_with(".coupling_" + joint);
+      if (of) removed.insert(cause);
     }
     undone.calibration = WithoutFault(undone.calibration, fault);
   }
   if (!AreOfNoRobot(removed, with)) return false;
   std::erase_if(project.elasticity.extra,
                 [&](const std::string& cause) { return removed.contains(cause); });
-  const RecordedModel robot = MakeRecordedModel(project, seed, undone, KnockSearch::kNone);
-  const CalibrationResult fit = Calibrate(robot.model, undone.calibration, robot.base,
-                                          ModelKinds(robot.model).back(), project.calibration);
-  return MarkerError(fit, undone.calibration, project.calibration) < kAsWellAsCauses * left;
+  try {
+    const RecordedModel robot =
+        MakeRecordedModel(project, seed, undone, PlainKnocks(undone.calibration));
+    const CalibrationResult fit = Calibrate(robot.model, undone.calibration, robot.base,
+                                            ModelKinds(robot.model).back(), project.calibration);
+    return MarkerError(fit, undone.calibration, project.calibration) < kAsWellAsCauses * left;
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 }  // namespace elastocal

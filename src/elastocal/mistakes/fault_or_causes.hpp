@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -14,11 +15,14 @@ namespace elastocal {
 struct FoundFault : GeneralFault {
   /// From FindTrialOffset: other trials do not tell which trial is wrong.
   bool of_one_trial = false;
+  /// From FindWithoutCauses: error of the robot without causes, the fault not undone, m.
+  double without_causes = std::numeric_limits<double>::infinity();
 };
 
 /// Finds the fault that explains most of what the fit `result` leaves. Several apparent knocks may
 /// be one fault that displaces all these clusters, which is therefore also searched for without the
-/// knocks. `as_recorded` is the recording before markers were split at knocks.
+/// knocks; not in a table, where distances within a cluster tell a marker that was glued on again.
+/// `as_recorded` is the recording before markers were split at knocks.
 std::optional<FoundFault> FindGeneralFault(const Project& project,
                                            std::optional<std::uint64_t> seed,
                                            Measurements as_recorded, const RecordedModel& robot,
@@ -26,13 +30,13 @@ std::optional<FoundFault> FindGeneralFault(const Project& project,
                                            const CalibrationResult& result);
 
 /// Whether data that have a fault may have chosen what hides it: causes or, in a table, which
-/// joints give way and how.
-bool MayHideFault(const Project& project, const Recording& recording);
+/// joints give way and how. What the project states hides nothing.
+bool MayHideFault(const Project& project, bool springs_by_data);
 
-/// Finds the fault of a robot without the causes that it seemed to have. In a table all its joints
-/// are elastic about their axes.
+/// Finds the fault of a robot without the causes that it seemed to have. Where the data chose the
+/// springs, all its joints are elastic about their axes.
 std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
-                                            const Measurements& as_recorded);
+                                            const Measurements& as_recorded, bool springs_by_data);
 
 /// Whether faults of joints explain a recording as well as the causes that these joints have in the
 /// fit `with`: an eccentricity and an ellipticity together look like a gain. Causes of this size

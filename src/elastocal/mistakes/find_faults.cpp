@@ -35,9 +35,8 @@ namespace elastocal {
 namespace {
 
 constexpr double kLeftByOdd = 0.5;  // share of the error of a fit, without them
-// Share of the error of a fit that treats wrong gains as gears.
+// Share of the error of a fit that has no faults, but for instance gears instead of wrong gains.
 constexpr double kLeftBesideGears = 0.8;
-constexpr double kAsWellByFewer = 1.1;  // ratio to the error of a fit with more parameters
 
 bool IsFarOff(const std::vector<RecordingFault>& gears) {
   constexpr double kFarOffGear = 0.1;  // beyond this, a linear estimate is invalid
@@ -121,13 +120,14 @@ class FaultsInTurn {
  public:
   FaultsInTurn(const Project& project, std::optional<std::uint64_t> seed,
                const Measurements& as_recorded, const RecordedModel& robot,
-               const Recording& recording, const ModelComparison& comparison)
+               const Recording& recording, const ModelComparison& comparison, bool springs_by_data)
       : project_(project),
         seed_(seed),
         as_recorded_(as_recorded),
         robot_(robot),
         recording_(recording),
         comparison_(comparison),
+        springs_by_data_(springs_by_data),
         gears_(FindImpossibleGears(comparison.largest())),
         of_slides_(ScaleOfSlides(gears_, comparison.largest(), project.calibration)),
         // With a correct scale, a robot whose lengths are all off has another size.
@@ -212,24 +212,27 @@ class FaultsInTurn {
   /// Finds faults of joints and others that displace several clusters; the search is made once.
   void Look() {
     if (few_) return;
-    if (!gears_.empty() || MayHideFault(project_, recording_)) {
-      Explain(FindWithoutCauses(project_, seed_, as_recorded_));
+    if (!gears_.empty() || MayHideFault(project_, springs_by_data_)) {
+      Explain(FindWithoutCauses(project_, seed_, as_recorded_, springs_by_data_));
       if (!gears_.empty() || IsFaultInstead()) return;
     }
     Explain(General());
   }
 
   /// Whether few faults explain the recording instead of what the data have chosen: far better, or
-  /// as well with fewer parameters.
+  /// better than bending joints with fewer parameters, or as well as causes of no robot. The faults
+  /// have to explain it, not the springs beside them.
   bool IsFaultInstead() const {
     const bool like_play = std::ranges::any_of(few_->faults, [](const RecordingFault& fault) {
       return fault.kind == FaultKind::kUnfinished || fault.kind == FaultKind::kJointLag;
     });
     if (!few_->complete || like_play) return false;
+    if (!(few_->left < kLeftBesideGears * found_->without_causes)) return false;
     if (few_->left < kLeftBesideGears * left_) return true;
-    const auto& bending = project_.elasticity.bending;
-    const bool bends = bending && !bending->empty() && project_.elasticity.extra.empty();
-    if (bends && few_->left < kAsWellByFewer * left_) return true;
+    const ElasticityChoice& own = project_.elasticity;
+    const bool bends =
+        springs_by_data_ && own.bending && !own.bending->empty() && own.extra.empty();
+    if (bends && few_->left < left_) return true;
     return ReplaceCauses(few_->faults, project_, seed_, as_recorded_, fit(), left_);
   }
 
@@ -328,6 +331,7 @@ class FaultsInTurn {
   const RecordedModel& robot_;
   const Recording& recording_;
   const ModelComparison& comparison_;
+  bool springs_by_data_;
   std::vector<RecordingFault> gears_;
   std::string of_slides_;
   bool scale_is_known_;
@@ -347,8 +351,10 @@ bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
 
 std::vector<std::string> FindFaults(const Project& project, std::optional<std::uint64_t> seed,
                                     const Measurements& as_recorded, const RecordedModel& robot,
-                                    const Recording& recording, const ModelComparison& comparison) {
-  return FaultsInTurn(project, seed, as_recorded, robot, recording, comparison).Run();
+                                    const Recording& recording, const ModelComparison& comparison,
+                                    bool springs_by_data) {
+  return FaultsInTurn(project, seed, as_recorded, robot, recording, comparison, springs_by_data)
+      .Run();
 }
 
 }  // namespace elastocal

@@ -23,6 +23,7 @@
 #include "elastocal/recorded/find_base.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/robot/move_motors.hpp"
+#include "elastocal/screening/frame_shifts.hpp"
 #include "elastocal/screening/measured_faults.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 
@@ -65,8 +66,10 @@ class FaultExplanation {
 
   std::string Describe() const {
     const bool single = faults_.size() == 1 && complete_;
-    const std::string cluster = MovedCluster(single ? kClearlyBetter : kAsWell);
+    const bool push = IsOnePush();
+    const std::string cluster = MovedCluster(single || push ? kClearlyBetter : kAsWell);
     if (!cluster.empty()) return cluster;
+    if (push) return DescribeShifts(faults_, general_.recording);
     if (single) return Remedy(faults_.front()) + (refuted_ ? kOrInAllOthers : "");
     const std::string together = SeveralJoints();
     if (!together.empty()) return together;
@@ -91,6 +94,15 @@ class FaultExplanation {
     return FaultAndRemedy(fault, project_.tree, general_.recording);
   }
 
+  /// Whether the faults are displacements of the frame along different axes, in the same postures.
+  bool IsOnePush() const {
+    const RecordingFault& first = faults_.front();
+    return complete_ && std::ranges::all_of(faults_, [&](const RecordingFault& one) {
+             return one.kind == FaultKind::kFrameShift && one.end == first.end &&
+                    std::abs(one.posture - first.posture) <= kSamePlace;
+           });
+  }
+
   struct SplitRecording {
     ErrorModel model;
     Recording recording;
@@ -110,7 +122,8 @@ class FaultExplanation {
 
   static bool IsSame(const RecordingFault& a, const RecordingFault& b) {
     return a.kind == b.kind && a.coordinate == b.coordinate && a.trial == b.trial &&
-           a.posture == b.posture && a.end == b.end && a.axis == b.axis && a.by_axis == b.by_axis;
+           a.posture == b.posture && a.end == b.end && a.by_axis == b.by_axis &&
+           (a.axis == b.axis || a.kind == FaultKind::kJointOffset);
   }
 
   static double Sum(const RecordingFault& fault, double more) {
@@ -210,9 +223,9 @@ class FaultExplanation {
   /// than `times` the error that the faults leave; else empty.
   std::string MovedCluster(double times) const {
     const RecordingFault& first = general_.fault;
-    const bool begins = first.kind == FaultKind::kJointOffset && first.linkage < 0 &&
-                        (first.posture > 0 || first.trial >= 0);
-    if (!begins) return "";
+    const bool displaces = first.kind == FaultKind::kFrameShift ||
+                           (first.kind == FaultKind::kJointOffset && first.linkage < 0);
+    if (!displaces || (first.posture == 0 && first.trial < 0)) return "";
     const Recording undone = Undone();
     double least = times * MarkerError(Fit(undone), undone, general_.options);
     std::string found;
@@ -270,11 +283,13 @@ class FaultExplanation {
       std::erase_if(cluster.markers, [&](int m) { return !SeenWithin(m, from, to); });
     }
     std::erase_if(clusters, [](const LabelCluster& one) { return one.markers.empty(); });
-    std::vector<int> coordinates;
-    for (const RecordingFault& one : faults_) {
-      if (one.kind == kind) coordinates.push_back(one.coordinate);
+    if (kind == FaultKind::kJointOffset) {
+      std::vector<int> coordinates;
+      for (const RecordingFault& one : faults_) {
+        if (one.kind == kind) coordinates.push_back(one.coordinate);
+      }
+      clusters = ClustersBeside(coordinates, clusters, general_.model);
     }
-    clusters = ClustersBeside(coordinates, clusters, general_.model);
     for (LabelCluster& cluster : clusters) {
       std::erase_if(cluster.markers,
                     [&](int m) { return !SeenWithin(m, 0, from) && !SeenWithin(m, to, count); });

@@ -39,7 +39,7 @@ std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
         1.0 + size, sd, joints, accept);
   }
   const auto scale = EstimateCommonScale(result, options);
-  if (!scale || std::abs(scale->size - size) > kConsistent * scale->sd ||
+  if (!scale || scale->of_one_length || std::abs(scale->size - size) > kConsistent * scale->sd ||
       std::abs(scale->size) < kPlain * scale->sd) {
     return "";
   }
@@ -51,7 +51,10 @@ std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
 }
 
 std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result) {
-  constexpr double kCertain = 3.0;  // standard deviations beyond the largest gear error
+  // A gain of a slide may be a fault of the cameras from less on, but the lead of its screw is
+  // typically off by 0.3 %, as the ratio of a gear is.
+  const double largest = LeastSize(FaultKind::kJointGain, false);
+  constexpr double kCertain = 5.0;  // standard deviations beyond the largest error
   std::vector<RecordingFault> faults;
   for (int i = 0; i < result.model.parameter_count(); ++i) {
     const Parameter& parameter = result.model.parameters[Size(i)];
@@ -60,7 +63,6 @@ std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result)
     if (correction.shape != CorrectionShape::kGear) continue;
     const Joint& joint = result.model.tree.joints[Size(correction.joint)];
     const double ratio = result.delta[i];
-    const double largest = LeastSize(FaultKind::kJointGain, joint.type == JointType::kPrismatic);
     if (std::abs(ratio) < largest + kCertain * result.sd[i]) continue;
     RecordingFault fault;
     fault.coordinate = joint.coordinate;

@@ -367,7 +367,7 @@ CalibrationRun CalibrateExperiment(const Project& given,
   // Not in the paper: finds mistakes of the recording from the residuals.
   if (work.sound) {
     run.faults = FindFaults(work.project, options.seed, work.as_recorded, work.robot,
-                            work.recording(), run.comparison);
+                            work.recording(), run.comparison, !run.elasticity.empty());
   }
   WarnOfWhatWasRecorded(work);
 

@@ -298,7 +298,8 @@ void AddStatistics(const CalibrationRun& run, Json& json) {
   if (run.common_scale) {
     json["common_scale"] = {{"size", run.common_scale->size},
                             {"sd", run.common_scale->sd},
-                            {"degrees_of_freedom", run.common_scale->degrees_of_freedom}};
+                            {"degrees_of_freedom", run.common_scale->degrees_of_freedom},
+                            {"of_one_length", run.common_scale->of_one_length}};
   }
   json["effective_parameters"] = result.posterior.effective_parameters;
 }

@@ -219,7 +219,12 @@ std::vector<MarkerCluster> RigidClusters(const Project& project) {
     const int link = project.markers[m].link;
     auto of_link = std::ranges::find(clusters, link, &MarkerCluster::link);
     if (of_link == clusters.end()) {
-      const std::string& name = project.tree.links[static_cast<std::size_t>(link)].name;
+      std::string name = project.tree.links[static_cast<std::size_t>(link)].name;
+      const auto is_taken = [&](const MarkerCluster& one) { return one.name == name; };
+      while (std::ranges::any_of(project.clusters, is_taken) ||
+             std::ranges::any_of(clusters, is_taken)) {
+        name += "_single";
+      }
       of_link = clusters.insert(clusters.end(), {name, link, {}});
     }
     of_link->markers.push_back(static_cast<int>(m));

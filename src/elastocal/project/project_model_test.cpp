@@ -108,6 +108,9 @@ markers:
   EXPECT_EQ(clusters[0].name, "C");
   EXPECT_EQ(clusters[1].name, "b");
   EXPECT_EQ(clusters[1].markers, (std::vector<int>{3, 5}));
+  Project other = project;
+  other.clusters[0].name = "b";
+  EXPECT_EQ(RigidClusters(other)[1].name, "b_single");
 }
 
 TEST(ProjectModel, JointsOfARecordingBendWhereTheyTwist) {

@@ -17,6 +17,7 @@ constexpr double kLeftOnCarrier = 1.0 / 3.0;
 constexpr double kRounding = 1e-9;
 constexpr std::size_t kMostLookedAt = 60;  // postures that are examined
 constexpr std::size_t kFewestTelling = 8;
+constexpr std::size_t kFewestCarried = 3;  // fewer are often hidden, and do not tell a link
 
 /// Positions of one marker in the frame of one link, m.
 using PositionsOnLink = std::vector<Eigen::Vector3d>;
@@ -82,7 +83,7 @@ std::optional<CarryingLink> FindCarryingLink(const ErrorModel& model, const Reco
   const NominalLinks robot(model, recording);
   std::optional<CarryingLink> found;
   for (const LabelCluster& cluster : clusters) {
-    if (cluster.markers.size() < 2) continue;
+    if (cluster.markers.size() < kFewestCarried) continue;
     const Eigen::ArrayXd scatter = robot.ScatterOf(cluster.markers);
     const int own = model.markers[Size(cluster.markers.front())].link;
     if (scatter.size() <= own || scatter[own] < kLeastScatter) continue;

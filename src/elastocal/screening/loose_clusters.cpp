@@ -20,6 +20,7 @@ constexpr double kLeftOfBody = 0.5;  // largest share of the squares that a rigi
 constexpr double kLeftOfAll = 0.25;
 constexpr int kFewestPostures = 8;
 constexpr std::size_t kFewestClusters = 3;
+constexpr std::size_t kFewestOfMoved = 3;  // a pair of single markers may hardly ever be seen
 
 /// Sums of squared displacements of markers, m^2: as given, and after a rigid motion.
 struct Squares {
@@ -140,7 +141,8 @@ std::optional<LooseCluster> FindLooseCluster(const CalibrationResult& result,
   }
   std::vector<const LabelCluster*> moved;
   for (const LabelCluster& cluster : clusters) {
-    if (!cluster.markers.empty() && !IsOnRoot(cluster, result.model)) moved.push_back(&cluster);
+    if (cluster.markers.size() < kFewestOfMoved || IsOnRoot(cluster, result.model)) continue;
+    moved.push_back(&cluster);
   }
   if (moved.size() < 2) return {};
   LooseCluster all;

@@ -8,10 +8,13 @@
 
 #include "elastocal/measurement/describe_posture.hpp"
 #include "elastocal/robot/move_motors.hpp"
+#include "elastocal/screening/frame_shifts.hpp"
 
 namespace elastocal {
 
 namespace {
+
+constexpr const char* kPushed = ", or the tracker or the base was pushed";
 
 /// Velocity of an entry of q in a posture of a motion, by the postures before and after, rad/s or
 /// m/s; else 0.
@@ -34,16 +37,6 @@ bool IsReached(const Recording& recording, int posture) {
   if (posture < 1 || recording.trials.empty()) return posture > 0;
   const int trial = recording.trial[posture];
   return recording.trial[posture - 1] == trial && !recording.trials[trial].of_motion();
-}
-
-std::string DescribeShift(const RecordingFault& fault, const Recording& recording) {
-  char sentence[200];
-  std::snprintf(sentence, sizeof sentence,
-                "the frame of the markers lies %.2f +- %.2f mm elsewhere along %c from %s ",
-                1e3 * fault.size, 1e3 * fault.sd, "xyz"[fault.axis],
-                DescribePosture(recording, fault.posture).c_str());
-  const std::string end = fault.end > 0 ? "to " + DescribePosture(recording, fault.end - 1) : "on";
-  return sentence + end + " (the tracker or the base was pushed?)";
 }
 
 }  // namespace
@@ -243,7 +236,7 @@ std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
     }
     return sentence;
   }
-  if (fault.kind == FaultKind::kFrameShift) return DescribeShift(fault, recording);
+  if (fault.kind == FaultKind::kFrameShift) return DescribeShifts({fault}, recording);
   const bool joint = fault.kind != FaultKind::kCameraScale;
   const LoggedPosition of = joint ? LoggedPositionOf(tree, fault.linkage, fault.coordinate)
                                   : LoggedPosition{"camera positions"};
@@ -278,12 +271,13 @@ std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
     return text + " from " + DescribePosture(recording, fault.posture) + " to the end of the trial";
   }
   if (fault.end > 0) {
-    return text + " from " + DescribePosture(recording, fault.posture) + " to " +
-           DescribePosture(recording, fault.end - 1);
+    text += " from " + DescribePosture(recording, fault.posture) + " to " +
+            DescribePosture(recording, fault.end - 1);
+    return MayBeShift(fault) ? text + kPushed : text;
   }
   if (fault.trial >= 0) return text + " in trial " + recording.trials[fault.trial].name;
-  return fault.posture > 0 ? text + " from " + DescribePosture(recording, fault.posture) + " on"
-                           : text;
+  if (fault.posture > 0) text += " from " + DescribePosture(recording, fault.posture) + " on";
+  return MayBeShift(fault) ? text + kPushed : text;
 }
 
 }  // namespace elastocal

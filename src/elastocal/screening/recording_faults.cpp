@@ -13,6 +13,7 @@
 #include "elastocal/robot/coordinates.hpp"
 #include "elastocal/robot/linkage.hpp"
 #include "elastocal/robot/move_motors.hpp"
+#include "elastocal/screening/frame_shifts.hpp"
 #include "elastocal/screening/measured_faults.hpp"
 
 namespace elastocal {
@@ -24,8 +25,7 @@ constexpr double kLeastOfChains = 0.5;  // share of the residuals of the chains 
 constexpr int kLeastSide = 3;           // postures before and after the beginning of a fault
 // Postures of the recording at which an offset of a joint may begin, and a passing one.
 constexpr int kSplits = 48, kSplitsOfStretch = 12;
-// Postures of a trial at which an offset to its end may begin.
-constexpr int kTrialSplits = 6;
+constexpr int kTrialSplits = 6;  // postures of a trial at which an offset to its end may begin
 
 using Blocks = std::vector<Eigen::VectorXd>;
 
@@ -79,6 +79,7 @@ class FaultSearch {
     const RecordingFault unfinished{.kind = FaultKind::kUnfinished};  // all joints, at rest later
     Try(equations, covariance, DerivativeOf(unfinished), {MakeTrial(unfinished)}, false);
     TryScale(equations, covariance);
+    PreferSlides(result.model.tree, found_);
     std::ranges::stable_sort(found_, std::greater(), &RecordingFault::share);
   }
 

@@ -20,8 +20,19 @@ namespace {
 constexpr double kSamePosture = 0.02;  // largest difference of any joint, rad or m
 constexpr double kStretch_s = 5.0;  // duration of the parts of a motion that are left out together
 
-void Unite(int a, int b, std::vector<int>& units) {
-  if (a != b) std::replace(units.begin(), units.end(), std::max(a, b), std::min(a, b));
+// Most neighbours that are compared with a posture, and most that are united with it: the others of
+// many equal postures are united with these.
+constexpr int kMostCompared = 5000, kMostUnited = 200;
+
+/// The first posture of the unit; `before` is an earlier one of each posture's unit, or itself.
+int FirstOfUnit(int posture, std::vector<int>& before) {
+  while (before[posture] != posture) posture = before[posture] = before[before[posture]];
+  return posture;
+}
+
+void Unite(int a, int b, std::vector<int>& before) {
+  const int first = FirstOfUnit(a, before), other = FirstOfUnit(b, before);
+  before[std::max(first, other)] = std::min(first, other);
 }
 
 /// Unites the moments of each stretch of a motion.
@@ -33,7 +44,7 @@ void UniteMoments(const Recording& recording, std::vector<int>& units) {
     const double time = recording.time_s[i];
     const bool first = motion[i - 1] != motion[i];
     if (first || time - begin > kStretch_s) begin = time;
-    if (begin < time) Unite(units[i - 1], units[i], units);
+    if (begin < time) Unite(i - 1, i, units);
   }
 }
 
@@ -71,14 +82,18 @@ std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit) {
             [&](int a, int b) { return std::pair(positions[a], a) < std::pair(positions[b], b); });
   std::iota(units.begin(), units.end(), 0);
   for (int k = 0; k < postures; ++k) {
-    for (int l = k + 1; l < postures && positions[order[l]] - positions[order[k]] <= kSamePosture;
-         ++l) {
+    const int end = std::min(postures, k + 1 + kMostCompared);
+    int united = 0;
+    for (int l = k + 1; l < end && united < kMostUnited; ++l) {
+      if (positions[order[l]] - positions[order[k]] > kSamePosture) break;
       const auto apart = (recording.q.row(order[k]) - recording.q.row(order[l])).cwiseAbs();
       if (apart.maxCoeff() > kSamePosture) continue;
-      Unite(units[order[k]], units[order[l]], units);
+      Unite(order[k], order[l], units);
+      ++united;
     }
   }
   UniteMoments(recording, units);
+  for (int i = 0; i < postures; ++i) units[i] = FirstOfUnit(i, units);
   return units;
 }
 
