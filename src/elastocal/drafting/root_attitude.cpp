@@ -224,7 +224,9 @@ std::string AddRootLink(const std::string& urdf, const RobotTree& tree,
   const std::size_t end = urdf.rfind("</robot");
   if (end == std::string::npos) return urdf;
   std::string joint = attitude.link + "_fixed";
-  const auto taken = [&](char quote) { return urdf.find(quote + joint + quote) != urdf.npos; };
+  const auto taken = [&](char quote) {
+    return urdf.find(quote + joint + quote) != std::string::npos;
+  };
   while (taken('"') || taken('\'')) joint += "_2";
   const Eigen::Vector3d p = attitude.T_new_root.translation();
   const Eigen::Vector3d rpy = ToRpy(attitude.T_new_root.linear(), Eigen::Vector3d::Zero());
