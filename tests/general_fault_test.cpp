@@ -154,6 +154,20 @@ TEST_F(GeneralFaults, AKnockedClusterIsNoSlipOfAJoint) {
   ExpectIn(Said(), "cluster TOOL: its markers seem to be elsewhere on their link from posture 2");
 }
 
+// The displacement of one cluster looks a little like one of the cameras' frame.
+TEST_F(GeneralFaults, AKnockedClusterIsNoPushedTracker) {
+  ErrorModel knocked = model_;
+  for (Marker& marker : knocked.markers) {
+    if (marker.name.starts_with("TOOL")) marker.p_link_marker += Eigen::Vector3d(6e-3, -5e-3, 4e-3);
+  }
+  recorded_.markers.bottomRows(28) = Record(knocked, base_.kept, 1).markers.bottomRows(28);
+  const RecordingFault pushed{
+      .kind = FaultKind::kFrameShift, .posture = 20, .size = 3e-3, .sd = 1e-4, .axis = 2};
+  const std::string said =
+      ExplainFault({pushed, model_, base_, recorded_, kKind, project_.calibration}, project_).text;
+  ExpectIn(said, "cluster TOOL: its markers seem to be elsewhere on their link from posture 21");
+}
+
 // The slip distorts the first fit. Its size is that of a fit that corrects it. It is compared with
 // a displacement of the cluster itself, which has more numbers.
 TEST_F(GeneralFaults, TheSizeOfALargeSlipIsThatOfTheLastFit) {
@@ -317,7 +331,10 @@ TEST_F(GeneralFaults, MarkersOnAnotherLinkThanTheProjectSaysAreNamedWithIt) {
   const ErrorModel truth = MakeErrorModel(project_.tree, markers, project_.placement);
   const Recording recorded = MakeSyntheticRecording(
       truth, Eigen::VectorXd::Zero(truth.parameter_count()), {.postures = 48, .seed = 3});
-  const auto found = FindCarryingLink(model_, recorded, SeenClusters(project_, recorded));
+  std::vector<LabelCluster> clusters = SeenClusters(project_, recorded);
+  const auto forearm = std::ranges::find(clusters, "FOREARM", &LabelCluster::name)->markers;
+  clusters.push_back({"PAIR", {forearm[0], forearm[1]}});  // two markers do not tell
+  const auto found = FindCarryingLink(model_, recorded, clusters);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->cluster, "FOREARM");
   EXPECT_EQ(found->own, "forearm");

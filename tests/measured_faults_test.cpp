@@ -10,9 +10,13 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/elastocal.hpp"
+#include "elastocal/io/posture_table.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/math/random.hpp"
 #include "elastocal/pipeline/calibrate_experiment.hpp"
 #include "elastocal/project/project.hpp"
+#include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/tables/read_file.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
@@ -112,6 +116,13 @@ TEST_F(MeasuredTiago, IsSoundAsItIs) {
   EXPECT_TRUE(run.faults.empty()) << FirstFault(run);
 }
 
+// The data choose springs and causes, which may hide a fault.
+TEST_F(MeasuredTiago, IsSoundWithTheDefaults) {
+  const CalibrationRun run = Run([](NumberTable&) {}, "");
+  EXPECT_FALSE(run.elasticity.empty());
+  EXPECT_TRUE(run.faults.empty()) << FirstFault(run);
+}
+
 // Single markers on one link keep their distances as those of a cluster do.
 TEST_F(MeasuredTiago, LabelsOfSingleMarkersExchangedInHalfOfTheRowsAreNamed) {
   const CalibrationRun run = Run([](NumberTable& table) {
@@ -122,15 +133,18 @@ TEST_F(MeasuredTiago, LabelsOfSingleMarkersExchangedInHalfOfTheRowsAreNamed) {
   EXPECT_TRUE(Says(FirstFault(run), "M2 and M3")) << FirstFault(run);
 }
 
+// It is taken so beside the causes that the data choose, and without them.
 TEST_F(MeasuredTiago, ASingleMarkerThatWasGluedOnAgainIsTakenAsTwo) {
-  const CalibrationRun run = Run([](NumberTable& table) {
+  const auto glued = [](NumberTable& table) {
     for (std::size_t i = 18; i < table.rows.size(); ++i) {
       Row& row = table.rows[i];  // M2 moves by 10 mm away from M3
       const Eigen::Vector3d from(row[6], row[7], row[8]), at(row[3], row[4], row[5]);
       const Eigen::Vector3d moved = at + 0.01 * (at - from).normalized();
       for (std::size_t k = 0; k < 3; ++k) row[3 + k] = moved[static_cast<Eigen::Index>(k)];
     }
-  });
+  };
+  const CalibrationRun run = Run(glued, "elasticity: {torsion: ['*'], bending: []}\n");
+  EXPECT_TRUE(run.faults.empty()) << FirstFault(run);
   ASSERT_EQ(run.knocks.size(), 1u);
   EXPECT_EQ(run.knocks.front().markers, std::vector<int>{1});
   EXPECT_EQ(run.knocks.front().posture, 18);
@@ -187,7 +201,8 @@ TEST_F(MeasuredTiago, AGainThatCausesExplainIsNamed) {
 }
 
 // One link that is 20 mm off in the robot description is calibrated; the cameras have no wrong
-// scale.
+// scale. With the springs and causes that the data choose, all lengths together seem 1.047 times
+// the true ones, by 5.4 standard deviations.
 TEST_F(MeasuredTiago, ALinkThatTheDescriptionHasWronglyIsNoScale) {
   std::string urdf = ReadFile(urdf_);
   const std::size_t joint = urdf.find("<joint name=\"arm_4_joint\"");
@@ -202,23 +217,65 @@ TEST_F(MeasuredTiago, ALinkThatTheDescriptionHasWronglyIsNoScale) {
   urdf.replace(origin, end - origin, written.str());
   const ScratchFolder scratch;
   const CalibrationRun run =
-      CalibrateTable(ProjectOf(scratch.Write("wrong.urdf", urdf), kPlain), NumberTable(training_));
+      CalibrateTable(ProjectOf(scratch.Write("wrong.urdf", urdf), ""), NumberTable(training_));
   EXPECT_TRUE(run.faults.empty()) << FirstFault(run);
   ASSERT_TRUE(run.common_scale);
   EXPECT_TRUE(run.common_scale->of_one_length);
 }
 
+class MeasuredTalos : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(recording_)) GTEST_SKIP() << recording_ << " is not there";
+  }
+  CalibrationRun Run(const NumberTable& table, const std::string& more) const {
+    const std::string project = "examples/talos_left_arm/project.yaml";
+    return CalibrateTable(ReadFile(SourceFile(project)) + more, table, project);
+  }
+  const std::filesystem::path recording_ =
+      SharedFile("data/talos_left_arm_mocap/talos_left_arm_02_10_contact.csv");
+};
+
+TEST_F(MeasuredTalos, IsSoundWithTheDefaults) {
+  const CalibrationRun run = Run(NumberTable(recording_), "");
+  EXPECT_TRUE(run.faults.empty()) << FirstFault(run);
+}
+
 // Sine, cosine and ellipticity of one joint and the coupling of the next one explain it as well.
-TEST(MeasuredTalos, AGainThatAnEccentricityExplainsIsNamed) {
-  const auto recording = SharedFile("data/talos_left_arm_mocap/talos_left_arm_02_10_contact.csv");
-  if (!std::filesystem::exists(recording)) GTEST_SKIP() << recording << " is not there";
-  NumberTable table(recording);
+TEST_F(MeasuredTalos, AGainThatAnEccentricityExplainsIsNamed) {
+  NumberTable table(recording_);
   for (Row& row : table.rows) row[table.Column("arm_left_2_joint")] *= 1.05;
-  const std::string project = "examples/talos_left_arm/project.yaml";
-  const CalibrationRun run =
-      CalibrateTable(ReadFile(SourceFile(project)) + "elasticity: {torsion: ['*'], bending: []}\n",
-                     table, project);
+  const CalibrationRun run = Run(table, "elasticity: {torsion: ['*'], bending: []}\n");
   EXPECT_TRUE(Says(FirstFault(run), "arm_left_2_joint: its positions are 1.05")) << FirstFault(run);
+}
+
+// Springs under loads, and joints that scatter as those of a robot with play do, which no model
+// describes.
+TEST(SimulatedArm, IsSoundWithTheDefaults) {
+  const Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  const ErrorModel model = MakeProjectModel(project, {});
+  const BaseParameters base = FindBaseParameters(model, project.identifiability);
+  Eigen::VectorXd errors = DrawErrors(model, base.kept,
+                                      {{ParameterKind::kTheta, 0.5 * M_PI / 180.0},
+                                       {ParameterKind::kR, 0.5e-3},
+                                       {ParameterKind::kD, 0.5e-3}},
+                                      2);
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    if (model.parameters[Size(i)].kind == ParameterKind::kTorsion) errors[i] = 1e-4;
+  }
+  Recording recorded = MakeSyntheticRecording(model, errors, {.postures = 48, .seed = 4});
+  recorded.markers = PredictedPositions(model, recorded, errors, {});
+  Random random(6);
+  for (int i = 0; i < recorded.posture_count(); ++i) {
+    recorded.markers.row(i) += random.NormalVector(recorded.markers.cols(), 2e-4).transpose();
+    recorded.q.row(i) += random.NormalVector(recorded.q.cols(), 3e-4).transpose();
+  }
+  const ScratchFolder scratch;
+  const auto table = scratch.path() / "table.csv";
+  WritePostureTable(table, recorded, project);
+  const CalibrationRun run = CalibrateExperiment(project, {table}, {.folds = 0});
+  EXPECT_FALSE(run.elasticity.empty());
+  EXPECT_TRUE(run.faults.empty()) << FirstFault(run);
 }
 
 }  // namespace
