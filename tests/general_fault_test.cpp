@@ -154,6 +154,18 @@ TEST_F(GeneralFaults, AKnockedClusterIsNoSlipOfAJoint) {
   ExpectIn(Said(), "cluster TOOL: its markers seem to be elsewhere on their link from posture 2");
 }
 
+TEST_F(GeneralFaults, ATrackerThatWasPushedAlongTwoAxesIsOneSentence) {
+  for (int m = 0; m < recorded_.marker_count(); ++m) {
+    recorded_.markers.col(3 * m).tail(28).array() += 6e-3;
+    recorded_.markers.col(3 * m + 1).tail(28).array() -= 5e-3;
+  }
+  const std::string said = Said();
+  ExpectIn(said, "the frame of the markers lies ");
+  ExpectIn(said, "along x");
+  ExpectIn(said, "along y");
+  EXPECT_EQ(said.find("pushed"), said.rfind("pushed")) << said;
+}
+
 // The displacement of one cluster looks a little like one of the cameras' frame.
 TEST_F(GeneralFaults, AKnockedClusterIsNoPushedTracker) {
   ErrorModel knocked = model_;
@@ -302,12 +314,14 @@ TEST_F(GeneralFaults, MarkersThatAreElsewhereInEachPostureAreNamed) {
         if (is_moved) moved.markers.block<1, 3>(i, 3 * m) += by;
       }
     }
-    // Two single markers that are seen in few postures say nothing, and forbid nothing.
     std::vector<LabelCluster> rigid = SeenClusters(project_, moved);
-    const auto wrist = std::ranges::find(moved.marker_names, "WRIST");
-    const auto single = static_cast<int>(wrist - moved.marker_names.begin());
-    moved.markers.block(3, 3 * single, 45, 3).setConstant(std::nan(""));
-    rigid.push_back({"PAIR", {single, single}});
+    if (clusters.size() > 1) {
+      // Two single markers that are seen in few postures say nothing, and forbid nothing.
+      const auto wrist = std::ranges::find(moved.marker_names, "WRIST");
+      const auto single = static_cast<int>(wrist - moved.marker_names.begin());
+      moved.markers.block(3, 3 * single, 45, 3).setConstant(std::nan(""));
+      rigid.push_back({"PAIR", {single, single}});
+    }
     const auto loose =
         FindLooseCluster(Calibrate(model_, moved, base_, kKind, project_.calibration), moved, rigid,
                          project_.calibration);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faults of a laboratory in recordings of real robots, whose errors no model describes completely.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -121,6 +122,9 @@ TEST_F(MeasuredTiago, IsSoundWithTheDefaults) {
   const CalibrationRun run = Run([](NumberTable&) {}, "");
   EXPECT_FALSE(run.elasticity.empty());
   EXPECT_TRUE(run.faults.empty()) << FirstFault(run);
+  EXPECT_TRUE(std::ranges::any_of(run.warnings, [](const std::string& warning) {
+    return Says(warning, "the cameras' positions may be 1.0164 +- 0.0048 times the true ones");
+  }));
 }
 
 // Single markers on one link keep their distances as those of a cluster do.
@@ -159,21 +163,6 @@ TEST_F(MeasuredTiago, APushedTrackerIsNamed) {
   });
   EXPECT_TRUE(Says(FirstFault(run), "mm elsewhere along x from")) << FirstFault(run);
   EXPECT_TRUE(Says(FirstFault(run), "pushed")) << FirstFault(run);
-}
-
-TEST_F(MeasuredTiago, ATrackerThatWasPushedAlongTwoAxesIsOneSentence) {
-  const CalibrationRun run = Run([](NumberTable& table) {
-    for (std::size_t i = 18; i < table.rows.size(); ++i) {
-      for (std::size_t m = 0; m < 4; ++m) {
-        table.rows[i][3 * m] += 0.015;
-        table.rows[i][3 * m + 1] -= 0.015;
-      }
-    }
-  });
-  const std::string said = FirstFault(run);
-  EXPECT_TRUE(Says(said, "the frame of the markers lies ")) << said;
-  EXPECT_TRUE(Says(said, "elsewhere along ") && Says(said, " mm along ")) << said;
-  EXPECT_EQ(said.find("pushed"), said.rfind("pushed")) << said;
 }
 
 // The lift is as likely. A correction of it has a name.
