@@ -48,7 +48,8 @@ done
 cd /tmp
 python3 -c "import elastocal; print(elastocal.Project('/usr/share/elastocal/models/talos/project.yaml').robot.name)"
 elastocal calibrate /usr/share/elastocal/models/talos/project.yaml \
-  --recording /mnt/recording /mnt/recording_sine /mnt/recording_random -o out --quiet 2>/dev/null
+  --recording /mnt/recording /mnt/recording_sine /mnt/recording_random \
+  --marker-places /mnt/recording/marker_places.csv -o out --quiet 2>/dev/null
 diff <(grep -v ^recording: out/calibration.yaml) <(grep -v ^recording: /mnt/calibration.yaml)
 echo "The calibration has the bits of the build's."
 grep -q 'urdf-loader .*Apache-2.0' out/report.html
