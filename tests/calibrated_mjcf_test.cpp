@@ -131,11 +131,35 @@ void ExpectThatMujocoAgrees(const CalibratedMjcf& robot) {
 }
 
 TEST(CalibratedMjcf, MujocoStandsWhereTheCalibratedUrdfDoes) {
-  ExpectThatMujocoAgrees(Export("tests/robots/arm6.urdf", ""));
+  ExpectThatMujocoAgrees(Export("tests/robots/arm6.urdf", "<compiler angle=\"degree\"/>"));
 }
 
 TEST(CalibratedMjcf, AnglesOfTheFileMayBeRadiansAndLinksMayFollowOthers) {
   ExpectThatMujocoAgrees(Export("tests/robots/mini_humanoid.urdf", "<compiler angle=\"radian\"/>"));
+}
+
+// The file that includes this one may state the unit.
+TEST(CalibratedMjcf, RangesOfJointsTellAnUnstatedUnit) {
+  const std::string urdf = ReadFile(SourceFile("tests/robots/arm6.urdf"));
+  const RobotTree tree = ParseUrdf(urdf, "arm6.urdf");
+  const auto hinge = std::ranges::find(tree.joints, JointType::kRevolute, &Joint::type);
+  const auto ref = [&](double unit) {
+    std::string text = NominalMjcf(tree, "");
+    if (unit > 0.0) {
+      const std::string name = "name=\"" + hinge->name + "\"";
+      text.insert(text.find(name), "range=\"" + std::to_string(hinge->limits.lower / unit) + " " +
+                                       std::to_string(hinge->limits.upper / unit) + "\" ");
+    }
+    const std::string made =
+        MakeCalibratedMjcf(text, "bodies.xml", tree, tree, {{hinge->name, -0.01}});
+    const std::size_t at = made.find("ref=\"");
+    return std::stod(made.substr(at + 5));
+  };
+  EXPECT_NEAR(ref(1.0), 0.01, 1e-12);
+  EXPECT_NEAR(ref(M_PI / 180.0), 0.01 * 180.0 / M_PI, 1e-9);
+  ExpectInputError([&] { ref(0.0); }, {"bodies.xml", "the unit of angles is unknown"});
+  // Where no angle is written, no unit is needed.
+  EXPECT_NE(MakeCalibratedMjcf(NominalMjcf(tree, ""), "bodies.xml", tree, tree, {}), "");
 }
 
 TEST(CalibratedMjcf, DefaultClassesSayWhatJointsAre) {

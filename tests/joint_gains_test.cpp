@@ -94,6 +94,27 @@ TEST_F(Gains, FiguresAreThoseOfTheEstimatorsOwnRefit) {
   EXPECT_NEAR(study.uncalibrated, Refitted(split, {}), 0.02 * study.uncalibrated);
 }
 
+// The run-time library carries causes; a URDF does not.
+TEST_F(Gains, CountCausesWhereTheExportCarriesThem) {
+  const std::string cause = "elbow_joint.eccentricity_sin";
+  Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  project.elasticity.extra = {"elbow_joint.eccentricity"};
+  model_ = MakeProjectModel(project, {});
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
+  Of(truth, cause) = 5e-3;
+  HeldOutSplit split;
+  split.training = Record(truth, 30, 1);
+  split.held_out = Record(truth, 60, 2);
+  split.model = model_;
+  split.delta = truth;
+  const GainStudy with = StudyGains({split}, {}, {.least = 0.0, .causes = {cause}});
+  EXPECT_EQ(Kept(with), std::vector<std::string>{"elbow_joint"});
+  EXPECT_NEAR(with.kept, std::sqrt(3.0) * 0.2e-3, 0.02e-3);
+  const GainStudy without = StudyGains({split}, {}, {.least = 0.0});
+  EXPECT_TRUE(without.joints.empty());
+  EXPECT_GT(without.all, 2.0 * with.all);
+}
+
 TEST_F(Gains, AGainIsWhatTheJointItselfDoes) {
   // The elbow is turned by 5 mrad about its axis, which moves only what it carries.
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,7 @@ namespace {
 
 constexpr double kSamePlace = 1e-4;  // m and rad: tolerance of poses written with six digits
 constexpr double kSameAxis = 1e-4;
+constexpr double kSameRange = 0.01;  // tolerance of ranges written with three digits
 // Inertia and damping of springs, as times, s (see simulation/mjcf.hpp).
 constexpr double kSpringInertiaTime = 0.010, kSpringDampingTime = 0.020;
 
@@ -31,15 +33,17 @@ Transform PoseInParent(const RobotTree& tree, std::size_t k, const MjcfBodies& b
          tree.links[static_cast<std::size_t>(joint.parent_link)].T_body_link * joint.T_parent_child;
 }
 
-/// Angles of an MJCF are degrees unless it says otherwise.
-double AngleUnit(const XmlElement& root) {
-  double unit = M_PI / 180.0;
+constexpr double kDegree = M_PI / 180.0;
+
+/// The unit of the model's angles that it states, rad.
+std::optional<double> StatedAngleUnit(const XmlElement& root) {
+  std::optional<double> unit;
   for (const XmlElement& element : root.Children()) {
     if (element.Tag() != "compiler") continue;
     if (element.Has("coordinate") && element.Text("coordinate") == "global") {
       element.Fail("coordinate=\"global\"; bodies in the frames of their parents were expected");
     }
-    if (element.Has("angle")) unit = element.Text("angle") == "radian" ? 1.0 : M_PI / 180.0;
+    if (element.Has("angle")) unit = element.Text("angle") == "radian" ? 1.0 : kDegree;
   }
   return unit;
 }
@@ -74,6 +78,43 @@ XmlElement JointOf(const MjcfBody& body, const Joint& joint, const std::string& 
         joint.name, axis.x(), axis.y(), axis.z(), joint.axis.x(), joint.axis.y(), joint.axis.z()));
   }
   return *found;
+}
+
+/// The unit of angles in which ranges of joints are like the URDF's limits; nothing where none is.
+std::optional<double> AngleUnitByRanges(const RobotTree& nominal, const MjcfBodies& bodies,
+                                        const MjcfJointDefaults& defaults) {
+  int radians = 0, degrees = 0;
+  for (std::size_t k = 0; k < nominal.joints.size(); ++k) {
+    const Joint& joint = nominal.joints[k];
+    if (joint.type != JointType::kRevolute || !joint.limits.has_position()) continue;
+    const MjcfBody& body = bodies.MovedBy(k);
+    const auto giver = defaults.Giver(JointOf(body, joint, bodies.JointName(k), defaults),
+                                      body.childclass, "range");
+    if (!giver) continue;
+    const Eigen::Vector2d limits(joint.limits.lower, joint.limits.upper);
+    std::istringstream text(giver->Text("range"));
+    Eigen::Vector2d range;
+    if (!(text >> range[0] >> range[1])) continue;
+    const auto is_like = [&](double unit) {
+      return (unit * range - limits).norm() <= kSameRange * limits.norm();
+    };
+    radians += is_like(1.0);
+    degrees += is_like(kDegree);
+  }
+  if (radians == degrees) return std::nullopt;
+  return radians > degrees ? 1.0 : kDegree;
+}
+
+/// The unit of the angles of a model that states none, rad: that in which ranges of joints are like
+/// the URDF's limits. MuJoCo's default (degrees) does not count where another file includes this
+/// one.
+double UnstatedAngleUnit(const XmlElement& root, const RobotTree& nominal, const MjcfBodies& bodies,
+                         const MjcfJointDefaults& defaults) {
+  if (const auto like_limits = AngleUnitByRanges(nominal, bodies, defaults)) return *like_limits;
+  root.Fail(
+      "the unit of angles is unknown: there is neither <compiler angle=\"...\"> nor a joint whose "
+      "range is like the URDF's limits; add <compiler angle=\"radian\"/> or "
+      "<compiler angle=\"degree\"/>, as the file that includes this one has it");
 }
 
 void CheckNominal(const MjcfBody& body, const Joint& joint, const Transform& expected) {
@@ -232,9 +273,15 @@ std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& sourc
   if (root.Tag() != "mujoco") {
     root.Fail("found <" + std::string(root.Tag()) + ">; an MJCF model, <mujoco>, was expected");
   }
-  const double angle_unit = AngleUnit(root);
   const MjcfBodies bodies(root, nominal, joint_names);
   const MjcfJointDefaults defaults(root);
+  const std::optional<double> stated = StatedAngleUnit(root);
+  const bool has_angles =
+      !springs.empty() ||
+      std::ranges::any_of(encoder_offsets, [](const auto& offset) { return offset.second != 0.0; });
+  const double angle_unit = stated       ? *stated
+                            : has_angles ? UnstatedAngleUnit(root, nominal, bodies, defaults)
+                                         : 1.0;  // nothing is written that has a unit
   std::vector<XmlEdit> edits;
   std::optional<SpringWriter> writer;
   if (!springs.empty()) writer.emplace(mjcf, root, angle_unit);

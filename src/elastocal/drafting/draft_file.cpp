@@ -1,35 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "elastocal/drafting/draft.hpp"
+#include "elastocal/files/yaml_word.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/tables/json_text.hpp"
 
 namespace elastocal {
 namespace {
-
-/// A name in a form that YAML reads back as text.
-std::string Word(const std::string& text) {
-  constexpr std::array kReserved = {"true", "false", "null", "yes", "no", "on", "off", "y", "n"};
-  std::string lower;
-  bool plain = !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) != 0;
-  for (const char c : text) {
-    const auto u = static_cast<unsigned char>(c);
-    plain = plain && u < 128 && (std::isalnum(u) != 0 || c == '_' || c == '-' || c == '.');
-    lower += static_cast<char>(std::tolower(u));
-  }
-  plain = plain && std::find(kReserved.begin(), kReserved.end(), lower) == kReserved.end();
-  if (plain) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += (c == '"' || c == '\\' ? "\\" : "") + std::string(1, c);
-  return quoted + "\"";
-}
 
 /// A length in mm without decimals; never "-0".
 std::string Mm(double metres) { return fmt::format("{:.0f}", std::round(metres * 1e3) + 0.0); }
@@ -52,13 +34,13 @@ class DraftWriter {
         "# docs/formats.md explains each key. Lengths in mm, angles in degrees, positions in the\n"
         "# frame of the link named. Settings left out have their default values.\n\n"
         "robot: {{urdf: {}}}\n\n",
-        Word(urdf));
+        YamlWord(urdf));
     WriteChains();
     WriteMarkers();
     text_ +=
         "# Joints with a torque sensor are not in a URDF. List them here; without them, statics\n"
         "# give the torques.\n# torque_sensors: [" +
-        Word(tree_.joints[Size(LimbJoint())].name) + "]\n\n";
+        YamlWord(tree_.joints[Size(LimbJoint())].name) + "]\n\n";
     WriteSpheres();
     WriteDesign();
     WriteSoles();
@@ -82,9 +64,9 @@ class DraftWriter {
         "chains:\n";
     for (const DraftedChain& chain : draft_.chains) {
       const std::string from =
-          chain.from_link == 0 ? "" : "from: " + Word(LinkName(chain.from_link)) + ", ";
-      text_ += fmt::format("  - {{name: {}, {}tip: {}}}\n", Word(chain.name), from,
-                           Word(LinkName(chain.tip_link)));
+          chain.from_link == 0 ? "" : "from: " + YamlWord(LinkName(chain.from_link)) + ", ";
+      text_ += fmt::format("  - {{name: {}, {}tip: {}}}\n", YamlWord(chain.name), from,
+                           YamlWord(LinkName(chain.tip_link)));
     }
     text_ += "\n";
   }
@@ -97,11 +79,11 @@ class DraftWriter {
         "to\n"
         "# about 10 mm; calibration estimates them.\n"
         "markers:\n  reference: {}  # on the root link\n  clusters:\n",
-        3 * draft_.clusters.size(), Word(draft_.clusters[0].name));
+        3 * draft_.clusters.size(), YamlWord(draft_.clusters[0].name));
     for (const DraftedCluster& cluster : draft_.clusters) {
       text_ +=
           fmt::format("    - {{name: {}, link: {}, positions_mm: [{}, {}, {}]}}{}\n",
-                      Word(cluster.name), Word(LinkName(BodyLink(tree_, cluster.body))),
+                      YamlWord(cluster.name), YamlWord(LinkName(BodyLink(tree_, cluster.body))),
                       MmList(cluster.points[0]), MmList(cluster.points[1]),
                       MmList(cluster.points[2]), cluster.guessed ? "  # guessed: no shape" : "");
     }
@@ -116,7 +98,7 @@ class DraftWriter {
     for (const CollisionSphere& sphere : draft_.spheres) {
       const int body = tree_.links[Size(sphere.link)].body;
       text_ += fmt::format("    - {{name: {}, link: {}, centre_mm: {}, radius_mm: {}}}{}\n",
-                           Word(sphere.name), Word(LinkName(sphere.link)),
+                           YamlWord(sphere.name), YamlWord(LinkName(sphere.link)),
                            MmList(sphere.p_link_centre), Mm(sphere.radius),
                            draft_.shapes.bodies[Size(body)].guessed ? "  # guessed" : "");
     }
@@ -132,7 +114,7 @@ class DraftWriter {
       // The reader moves positions that are left out from zero into the limits.
       const double value = draft_.rest.q[c] / (turns ? kRadiansPerDegree : kMetresPerMm);
       if (std::abs(value) < 5e-4) continue;
-      list += fmt::format("    {}: {:.3f}{}\n", Word(joint.name), value, turns ? "" : "  # mm");
+      list += fmt::format("    {}: {:.3f}{}\n", YamlWord(joint.name), value, turns ? "" : "  # mm");
     }
     text_ += list.empty() ? "" : "  rest_deg:\n" + list;
   }
@@ -143,7 +125,7 @@ class DraftWriter {
     for (const auto& [c, range] : draft_.ranges) {
       const Joint& joint = tree_.joints[Size(tree_.coordinate_joint[Size(c)])];
       const double unit = joint.type == JointType::kRevolute ? kRadiansPerDegree : kMetresPerMm;
-      text_ += fmt::format("    {}: [{:.1f}, {:.1f}]\n", Word(joint.name), range[0] / unit,
+      text_ += fmt::format("    {}: [{:.1f}, {:.1f}]\n", YamlWord(joint.name), range[0] / unit,
                            range[1] / unit);
     }
   }
@@ -164,12 +146,12 @@ class DraftWriter {
   }
 
   void WriteSetup(const ChainSetup& setup) {
-    text_ += fmt::format("    - chain: {}\n", Word(setup.name));
-    if (!setup.mirror.empty()) text_ += fmt::format("      mirror: {}\n", Word(setup.mirror));
+    text_ += fmt::format("    - chain: {}\n", YamlWord(setup.name));
+    if (!setup.mirror.empty()) text_ += fmt::format("      mirror: {}\n", YamlWord(setup.mirror));
     if (!setup.support.empty()) {
       std::string feet;
       for (const int link : setup.support)
-        feet += (feet.empty() ? "" : ", ") + Word(LinkName(link));
+        feet += (feet.empty() ? "" : ", ") + YamlWord(LinkName(link));
       text_ += fmt::format("      support: [{}]\n", feet);
     }
     if (setup.box) {
@@ -186,8 +168,8 @@ class DraftWriter {
     if (setup.contacts.empty()) return;
     text_ += "      contacts:\n";
     for (const auto& [a, b] : setup.contacts) {
-      text_ += fmt::format("        - [{}, {}]\n", Word(draft_.spheres[Size(a)].name),
-                           Word(draft_.spheres[Size(b)].name));
+      text_ += fmt::format("        - [{}, {}]\n", YamlWord(draft_.spheres[Size(a)].name),
+                           YamlWord(draft_.spheres[Size(b)].name));
     }
   }
 
@@ -210,10 +192,10 @@ class DraftWriter {
         note += note.empty() ? "  # the size is a guess, measure it" : "; the size is a guess";
       }
       text_ += sole.ball_radius
-                   ? fmt::format("    - {{link: {}, ball_radius_mm: {}}}{}\n", Word(sole.link),
+                   ? fmt::format("    - {{link: {}, ball_radius_mm: {}}}{}\n", YamlWord(sole.link),
                                  Mm(*sole.ball_radius), note)
                    : fmt::format("    - {{link: {}, lower_mm: {}, upper_mm: {}}}{}\n",
-                                 Word(sole.link), MmList(sole.lower), MmList(sole.upper), note);
+                                 YamlWord(sole.link), MmList(sole.lower), MmList(sole.upper), note);
     }
     if (draft_.stance) {
       text_ +=

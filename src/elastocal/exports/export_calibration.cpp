@@ -123,13 +123,16 @@ struct Kept {
   std::vector<std::string> comments;  ///< names of these joints, with the reason
 };
 
-/// Joints and legs whose errors are hardly determined.
-std::set<std::string> Insignificant(const CalibrationEstimate& estimate, double least) {
+/// Joints and legs whose exported errors are hardly determined.
+std::set<std::string> Insignificant(const CalibrationEstimate& estimate,
+                                    const StoredCalibration& exported, double least) {
   std::map<std::string, double> largest;
   for (const ParameterEstimate& parameter : estimate.parameters) {
     if (parameter.external) continue;
     double& most = largest[OwnerName(parameter.name)];
-    if (parameter.sd > 0.0) most = std::max(most, std::abs(parameter.value) / parameter.sd);
+    const auto found = exported.joint_errors.find(parameter.name);
+    if (found == exported.joint_errors.end() || !(parameter.sd > 0.0)) continue;
+    most = std::max(most, std::abs(found->second) / parameter.sd);
   }
   std::set<std::string> names;
   for (const auto& [name, most] : largest) {
@@ -142,7 +145,7 @@ Kept KeepWhatHelps(const CalibratedRobot& robot, const CalibrationEstimate& esti
                    const ExportOptions& options) {
   Kept kept{IsRigid(options) ? AsInUrdf(robot.calibration) : robot.calibration, {}, {}};
   if (options.least_significance > 0.0) {
-    kept.nominal = Insignificant(estimate, options.least_significance);
+    kept.nominal = Insignificant(estimate, kept.calibration, options.least_significance);
     for (const std::string& name : kept.nominal) {
       kept.comments.push_back(
           fmt::format("{} is nominal: no error of {:g} standard deviations or more", name,
@@ -156,9 +159,12 @@ Kept KeepWhatHelps(const CalibratedRobot& robot, const CalibrationEstimate& esti
   };
   return_to_nominal();
   if (!options.least_gain) return kept;
-  const HeldOutGains gains = FindHeldOutGains(
-      robot,
-      {.least = *options.least_gain, .with_loads = HasLoads(options), .nominal = kept.nominal});
+  GainOptions deployed{
+      .least = *options.least_gain, .with_loads = HasLoads(options), .nominal = kept.nominal};
+  if (options.format == "c99" || options.format == "runtime") {
+    deployed.causes = CausesAtRunTime(robot.project.tree, robot.calibration);
+  }
+  const HeldOutGains gains = FindHeldOutGains(robot, deployed);
   for (const JointGain& joint : gains.study.joints) {
     if (!joint.kept) kept.nominal.insert(joint.owner);
   }

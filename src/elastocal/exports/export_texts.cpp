@@ -11,6 +11,7 @@
 
 #include "elastocal/description/series_springs.hpp"
 #include "elastocal/files/xml_edit.hpp"
+#include "elastocal/files/yaml_word.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/robot/kinematics.hpp"
 
@@ -151,8 +152,8 @@ std::string MakePalYaml(const CalibratedUrdf& urdf, const std::vector<std::strin
     text += fmt::format(
         "{}: {{x: {:.17g}, y: {:.17g}, z: {:.17g}, roll: {:.17g}, pitch: {:.17g}, yaw: {:.17g}, "
         "offset: {:.17g}}}\n",
-        joint, change.xyz.x(), change.xyz.y(), change.xyz.z(), change.rpy.x(), change.rpy.y(),
-        change.rpy.z(), zero);
+        YamlWord(joint), change.xyz.x(), change.xyz.y(), change.xyz.z(), change.rpy.x(),
+        change.rpy.y(), change.rpy.z(), zero);
   }
   return text;
 }

@@ -38,10 +38,11 @@ HeldOutSplit StoredSplit(const RecordedModel& recorded, Measurements measured,
   return split;
 }
 
-/// For each fold: the estimate without it, judged by it.
+/// For each fold: the estimate without it, judged by it. `with_geometry`: what is exported is an
+/// estimate of geometry alone.
 std::vector<HeldOutSplit> FoldSplits(const RecordedModel& recorded, const Recording& recording,
                                      const std::vector<MarkerMeasurement>& places,
-                                     const CalibrationOptions& options) {
+                                     const CalibrationOptions& options, bool with_geometry) {
   if (recording.posture_count() < kLeastGainPostures) {
     throw InputError(fmt::format("{}: {} postures; {} or more were expected to judge joints by",
                                  recording.source, recording.posture_count(), kLeastGainPostures));
@@ -63,6 +64,11 @@ std::vector<HeldOutSplit> FoldSplits(const RecordedModel& recorded, const Record
     std::vector<std::string> warnings;  // the calibration has given the same warnings
     CalibrationResult result =
         CalibrateWithPlaces(places, recorded, split.training, fold_options, warnings);
+    if (with_geometry) {
+      split.exported = Calibrate(recorded.model, split.training, recorded.base,
+                                 ModelKind::kGeometric, fold_options)
+                           .delta;
+    }
     split.model = std::move(result.model);
     split.delta = std::move(result.delta);
     splits.push_back(std::move(split));
@@ -116,9 +122,10 @@ HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& o
     gains.judged_on =
         fmt::format("{} postures, each by an estimate without the fifth that it is in",
                     measured.calibration.posture_count());
-    gains.study =
-        StudyGains(FoldSplits(recorded, measured.calibration, places, project.calibration),
-                   project.calibration, knowing);
+    const bool with_geometry = !options.with_loads && !robot.calibration.urdf_errors.empty();
+    gains.study = StudyGains(
+        FoldSplits(recorded, measured.calibration, places, project.calibration, with_geometry),
+        project.calibration, knowing);
   }
   return gains;
 }

@@ -166,6 +166,13 @@ void CorrectWeights(const RobotTree& tree, const Correction& correction, double 
   for (int i = 0; i < 3; ++i) model.moment[3 * body + Size(i)] += value * added[i];
 }
 
+/// Whether the correction depends on motion and loads only.
+bool IsAtRunTime(const Correction& correction) {
+  const CorrectionTarget target = TargetOf(correction);
+  return target == CorrectionTarget::kLoads || target == CorrectionTarget::kRoot ||
+         ShiftFunction(correction.shape).has_value();
+}
+
 /// Applies the causes that the calibration found, as far as they depend on motion and loads only.
 void ApplyCauses(const RobotTree& tree, const StoredCalibration& calibration, RuntimeModel& model) {
   for (const Correction& correction : PossibleCorrections(tree, std::nullopt)) {
@@ -361,6 +368,16 @@ StoredRobot RestoreRobot(const Project& project, const StoredCalibration& calibr
     }
   }
   return robot;
+}
+
+std::set<std::string> CausesAtRunTime(const RobotTree& tree, const StoredCalibration& calibration) {
+  std::set<std::string> names;
+  for (const Correction& correction : PossibleCorrections(tree, std::nullopt)) {
+    const auto found = calibration.joint_errors.find(correction.name);
+    if (found == calibration.joint_errors.end() || found->second == 0.0) continue;
+    if (IsAtRunTime(correction)) names.insert(correction.name);
+  }
+  return names;
 }
 
 std::string NothingToCorrect() {

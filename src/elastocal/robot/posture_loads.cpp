@@ -24,8 +24,10 @@ Eigen::VectorXd LegTorques(const SupportLeg& leg, const Eigen::VectorXd& measure
 
 /// Moment of the weight of all links about the origin of the root link, in its axes, N.m.
 Eigen::Vector3d RootMoment(const ErrorModel& model, const Geometry& geometry,
-                           const Eigen::VectorXd& q, const Eigen::Vector3d& gravity_ref) {
-  const std::vector<Transform> T_ref_link = CalibratedLinkTransforms(model, geometry, q);
+                           const Eigen::VectorXd& q, const Eigen::Vector3d& gravity_ref,
+                           const JointLoads& deflected_by) {
+  const std::vector<Transform> T_ref_link =
+      CalibratedLinkTransforms(model, geometry, q, deflected_by);
   const Transform T_ref_root = WaistPose(geometry);
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < model.tree.links.size(); ++i) {
@@ -84,10 +86,13 @@ PostureLoads LoadPosture(const ErrorModel& model, const Geometry& geometry,
                          const Eigen::VectorXd& q, int leg, const MeasuredLoads& measured,
                          const Eigen::Vector3d& gravity_ref, const LoadOptions& options) {
   PostureLoads loads;
-  const JointLoads gravity =
-      GravityLoads(model, geometry, q, gravity_ref, leg < 0 ? 0 : model.legs[leg].link);
-  loads.joints = gravity;
-  if (measured.torques.size() > 0) UseMeasuredTorques(measured.torques, loads.joints);
+  JointLoads gravity;
+  for (int step = 0; step < 2; ++step) {  // first of the rigid, then of the deflected robot
+    gravity = GravityLoads(model, geometry, q, gravity_ref, leg < 0 ? 0 : model.legs[leg].link,
+                           loads.joints);
+    loads.joints = gravity;
+    if (measured.torques.size() > 0) UseMeasuredTorques(measured.torques, loads.joints);
+  }
   if (leg < 0) {
     AddByCorrections(model, geometry, q, measured, gravity_ref, loads.joints);
     return loads;
@@ -103,7 +108,7 @@ PostureLoads LoadPosture(const ErrorModel& model, const Geometry& geometry,
 
 void AddShapes(const ErrorModel& model, const Geometry& geometry, const Eigen::VectorXd& q,
                const Eigen::Vector3d& gravity_ref, PostureHistory history, JointLoads& loads) {
-  history.root_moment = RootMoment(model, geometry, q, gravity_ref);
+  history.root_moment = RootMoment(model, geometry, q, gravity_ref, loads);
   loads.shapes = EvaluateShapes(model.tree, model.elasticity.corrections, q,
                                 CorrectedLoads(geometry, loads).row(2).transpose(), history);
 }

@@ -49,9 +49,9 @@ struct PostureLoads {
   Vector6d WaistLoad(const ErrorModel& model, const Geometry& geometry, int leg) const;
 };
 
-/// Loads of the robot whose waist is where `geometry` has it (PlaceWaist), and which stands on leg
-/// `leg` of the model or, for -1, has its waist held still. `gravity_ref` is in the reference
-/// frame, m/s^2.
+/// Loads of the deflected robot (GravityLoads, in two steps) whose waist is where `geometry` has it
+/// (PlaceWaist), and which stands on leg `leg` of the model or, for -1, has its waist held still.
+/// `gravity_ref` is in the reference frame, m/s^2.
 PostureLoads LoadPosture(const ErrorModel& model, const Geometry& geometry,
                          const Eigen::VectorXd& q, int leg, const MeasuredLoads& measured,
                          const Eigen::Vector3d& gravity_ref, const LoadOptions& options);

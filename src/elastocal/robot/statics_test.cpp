@@ -2,9 +2,11 @@
 #include "elastocal/robot/statics.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "elastocal/robot/posture_loads.hpp"
 #include "tests/random_robot.hpp"
 #include "tests/test_robots.hpp"
 
@@ -154,6 +156,35 @@ TEST(GravityLoads, OfALeverByHand) {
   // its other side, which turns the child the other way round.
   const JointLoads hanging = GravityLoads(model, ApplyErrors(model, delta), q, gravity, lower);
   EXPECT_LT((hanging.col(1) - Vector3d(0, 0, -(100 + 1) * 10 * 0.5)).norm(), 1e-12);
+}
+
+TEST(PostureLoads, AreThoseOfTheDeflectedArmByHand) {
+  // The arm of 13 N.m at the shoulder and 3 N.m at the elbow is lifted by 45 degrees. Its elastic
+  // shoulder sinks, which brings the masses further out.
+  RobotTree tree = MakeRoot();
+  const int upper = AddJoint(tree, "shoulder", 0, Transform::Identity(), {0, -1, 0});
+  const int lower = AddJoint(tree, "elbow", upper, Offset(0.5, 0, 0), {0, -1, 0});
+  tree.links[lower].mass = 2.0;
+  tree.links[lower].com = {0.15, 0, 0};
+  const ErrorModel model =
+      MakeErrorModel(tree, {{"M", lower, {0.3, 0, 0}}}, {}, {.torsion = {0, 1}});
+  Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
+  delta[FindParameter(model.parameters, "shoulder.compliance_z")] = 1e-3;
+  const Geometry geometry = ApplyErrors(model, delta);
+  const Vector3d gravity(0, 0, -10);
+  const Eigen::Vector2d q(M_PI / 4, 0);
+
+  const PostureLoads by_statics = LoadPosture(model, geometry, q, -1, {}, gravity, {});
+  const double sunk = M_PI / 4 - 1e-3 * 13 * std::cos(M_PI / 4);
+  EXPECT_NEAR(by_statics.joints(2, 0), -13 * std::cos(sunk), 1e-12);
+  EXPECT_NEAR(by_statics.joints(2, 1), -3 * std::cos(sunk), 1e-12);
+
+  // A sensor at the shoulder says how far that sinks.
+  MeasuredLoads measured;
+  measured.torques = Eigen::Vector2d(50, std::numeric_limits<double>::quiet_NaN());
+  const PostureLoads by_sensor = LoadPosture(model, geometry, q, -1, measured, gravity, {});
+  EXPECT_NEAR(by_sensor.joints(2, 0), -50, 1e-12);
+  EXPECT_NEAR(by_sensor.joints(2, 1), -3 * std::cos(M_PI / 4 - 1e-3 * 50), 1e-12);
 }
 
 /// Height of the tip of a horizontal link of 0.3 m behind its elastic joint, if the motor's sensor

@@ -25,10 +25,8 @@ constexpr double kMeasuredWrong = 6.0;  // times the median distance
 /// Whether an export contains the parameter.
 bool IsCarried(const Parameter& parameter, const GainOptions& gains) {
   if (gains.nominal.contains(OwnerName(parameter.name))) return false;
-  if (parameter.kind == ParameterKind::kCorrection ||
-      parameter.kind == ParameterKind::kTorqueBias) {
-    return false;
-  }
+  if (parameter.kind == ParameterKind::kTorqueBias) return false;
+  if (parameter.kind == ParameterKind::kCorrection) return gains.causes.contains(parameter.name);
   return gains.with_loads || !IsElastic(parameter.kind);
 }
 

@@ -49,6 +49,8 @@ struct GainOptions {
   double least = 0.0;      ///< a joint that gains no more than this returns to nominal, m
   bool with_loads = true;  ///< what is deployed compensates compliances; if false: geometry alone
   std::set<std::string> nominal = {};  ///< joints and legs that are nominal whatever they gain
+  std::set<std::string> causes =
+      {};  ///< names of the corrections that are deployed (corrections.hpp)
   /// Markers whose positions are known beside the recording: they stay where the estimate has them.
   std::set<std::string> known_markers = {};
 };
@@ -65,8 +67,8 @@ struct GainOptions {
 /// unless the positions are known (`known_markers`).
 ///
 /// Displacements by single joints are taken as additive (for errors of 10 mrad: to some percent).
-/// Errors that exports do not carry are nominal from the beginning: corrections (corrections.hpp),
-/// biases of torque sensors, without `with_loads` compliances, and those of the joints in
+/// Errors that exports do not carry are nominal from the beginning: corrections that are not in
+/// `causes`, biases of torque sensors, without `with_loads` compliances, and those of the joints in
 /// `nominal`. At most 400 training postures, evenly chosen, place the markers. Several splits
 /// (folds) are judged together. Throws InputError where no marker was seen on held-out postures.
 GainStudy StudyGains(const std::vector<HeldOutSplit>& splits, const CalibrationOptions& options,
