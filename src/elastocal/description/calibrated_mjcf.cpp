@@ -86,12 +86,12 @@ std::optional<double> AngleUnitByRanges(const RobotTree& nominal, const MjcfBodi
   int radians = 0, degrees = 0;
   for (std::size_t k = 0; k < nominal.joints.size(); ++k) {
     const Joint& joint = nominal.joints[k];
-    if (joint.type != JointType::kRevolute || !joint.limits.has_position()) continue;
+    const Eigen::Vector2d limits(joint.limits.lower, joint.limits.upper);
+    if (joint.type != JointType::kRevolute || !limits.allFinite()) continue;
     const MjcfBody& body = bodies.MovedBy(k);
     const auto giver = defaults.Giver(JointOf(body, joint, bodies.JointName(k), defaults),
                                       body.childclass, "range");
     if (!giver) continue;
-    const Eigen::Vector2d limits(joint.limits.lower, joint.limits.upper);
     std::istringstream text(giver->Text("range"));
     Eigen::Vector2d range;
     if (!(text >> range[0] >> range[1])) continue;
