@@ -70,6 +70,8 @@ struct CalibratedMjcf {
   std::string text;
 };
 
+constexpr const char* kDegrees = "<compiler angle=\"degree\"/>";
+
 /// Moves axis, type and zero of the first joint into a default class of its body.
 std::string WithDefaultClass(std::string mjcf, const std::string& axis) {
   const std::size_t body = mjcf.find("<body", mjcf.find("<body") + 1);
@@ -131,7 +133,7 @@ void ExpectThatMujocoAgrees(const CalibratedMjcf& robot) {
 }
 
 TEST(CalibratedMjcf, MujocoStandsWhereTheCalibratedUrdfDoes) {
-  ExpectThatMujocoAgrees(Export("tests/robots/arm6.urdf", "<compiler angle=\"degree\"/>"));
+  ExpectThatMujocoAgrees(Export("tests/robots/arm6.urdf", kDegrees));
 }
 
 TEST(CalibratedMjcf, AnglesOfTheFileMayBeRadiansAndLinksMayFollowOthers) {
@@ -217,9 +219,9 @@ TEST(CalibratedMjcf, NamesWhatDoesNotBelongToTheUrdf) {
 }
 
 TEST(CalibratedMjcf, WhatBodiesAreCalledDoesNotMatter) {
-  const CalibratedMjcf robot = Export("tests/robots/arm6.urdf", "");
+  const CalibratedMjcf robot = Export("tests/robots/arm6.urdf", kDegrees);
   const std::string expected = robot.text;
-  std::string mjcf = NominalMjcf(robot.nominal, "");
+  std::string mjcf = NominalMjcf(robot.nominal, kDegrees);
   int bodies = 0;
   for (std::size_t at = 0; (at = mjcf.find("<body name=\"", at)) != std::string::npos;
        ++at, ++bodies) {
