@@ -20,8 +20,8 @@ static inline double ec_most_change_of_pace(const ec_memory* memory, int c) {
   return EC_GENTLE * memory->most_change[c] / memory->calls_to_pace;
 }
 
-/* How many calls' worth of change are between `wanted` and the pace (or, if not `from_pace`, rest) of
-   a branch's coordinates: the most of them. */
+/* How many calls' worth of change are between `wanted` and the pace (or, if not `from_pace`, rest)
+   of a branch's coordinates: the most of them. */
 static inline double ec_most_calls(const ec_robot* robot, int branch, const double* wanted,
                                    int from_pace, const ec_memory* memory) {
   double most = 0.0;
@@ -68,8 +68,8 @@ static inline double ec_go_on(const ec_robot* robot, const double* nominal, int 
   return ec_within(robot, memory, nominal, c, q);
 }
 
-/* The way of each coordinate from the last command that was given to the goal, beside the plan, into
-   memory->work_q; how far the goal went, into memory->kept_q. The goal is remembered. */
+/* The way of each coordinate from the last command that was given to the goal, beside the plan,
+   into memory->work_q; how far the goal went, into memory->kept_q. The goal is remembered. */
 static inline void ec_see_goal(const ec_robot* robot, const double* nominal, const double* goal,
                                ec_memory* memory) {
   int c;
@@ -126,7 +126,7 @@ static inline int ec_ease(const ec_robot* robot, const double* nominal, const do
   memory->is_bound = 0; /* the joints' own limits alone */
   for (branch = 0; branch < robot->branches; ++branch) {
     memory->search[branch].state = EC_DONE;
-    memory->search[branch].cost = HUGE_VAL;
+    memory->search[branch].cost = EC_HUGE;
     if (!ec_ease_branch(robot, branch, nominal, memory, command)) continue;
     ec_begin(&memory->search[branch]);
     eased = 1;

@@ -35,7 +35,7 @@ static inline void ec_cross_play(const ec_robot* robot, const double* q, int pla
     const ec_shift* shift = &robot->shift[i];
     const double position = ec_position(&robot->calibrated[shift->joint], q);
     if (shift->function != EC_HYSTERESIS || shift->amount == 0.0) continue;
-    if (isfinite(from[i])) side[i] += (position - from[i]) / fabs(shift->amount);
+    if (ec_is_sane(from[i])) side[i] += (position - from[i]) / fabs(shift->amount);
     if (side[i] > 1.0) side[i] = 1.0;
     if (side[i] < -1.0) side[i] = -1.0;
     from[i] = position;
