@@ -207,5 +207,27 @@ TEST_F(RuntimeEasingTalos, AStepOfTheSupportIsCorrectedAtOnce) {
   }
 }
 
+// The robot steps from foot to foot while its arm is too short. The loads of the legs jump.
+TEST_F(RuntimeEasingTalos, LimitsAreKeptWhereTheSupportChanges) {
+  constexpr double kSlow = 1e-3;
+  Compensator robot = Make();
+  robot.LimitChanges(Eigen::VectorXd::Constant(project_.motion.rest.size(), kSlow));
+  const std::vector<Eigen::VectorXd> plans = StretchOfElbow(300);
+  for (const double calls : {0.0, 30.0}) {
+    robot.EaseChanges(calls);
+    robot.Forget();
+    Eigen::VectorXd last;
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      robot.Command(plans[i], kNoTorque, i / 20 % 3 + 1);
+      for (Eigen::Index c = 0; i > 0 && c < last.size(); ++c) {
+        const double planned = std::abs(plans[i][c] - plans[i - 1][c]);
+        EXPECT_LE(std::abs(robot.command()[c] - last[c]), std::max(kSlow, planned) + 1e-12)
+            << i << ", " << c;
+      }
+      last = robot.command();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace elastocal

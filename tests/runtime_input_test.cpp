@@ -59,6 +59,60 @@ TEST(RuntimeInput, EachFunctionFiltersItsOwnTorques) {
   }
 }
 
+// A torque that has gone with all others is not known any more.
+TEST(RuntimeInput, ACallWithoutTorquesForgetsThem) {
+  CompensatorOptions options;
+  options.torque_time_constant_s = 0.05;
+  const Six pull = Six::Constant(-40.0), unknown = Six::Constant(kNan);
+  for (const bool forget : {false, true}) {
+    Compensator robot(ElasticArm(), options), statics(ElasticArm(), options);
+    // A torque that no sensor has ever told is not missed.
+    EXPECT_EQ(robot.Forward(kPlan, unknown, 0), unsigned{EC_FINE});
+    EXPECT_EQ(robot.Forward(kPlan, pull, 0), unsigned{EC_FINE});
+    const Eigen::Isometry3d pulled = robot.link_pose(0);
+    EXPECT_EQ(robot.Forward(kPlan, unknown, 0), unsigned{EC_BAD_TORQUE});
+    EXPECT_TRUE(robot.link_pose(0).matrix() == pulled.matrix());
+    if (forget) {
+      robot.Forget();
+    } else {
+      EXPECT_EQ(robot.Forward(kPlan, kNone, 0), unsigned{EC_FINE});
+    }
+    EXPECT_EQ(robot.Forward(kPlan, unknown, 0), unsigned{EC_BAD_TORQUE});
+    statics.Forward(kPlan, kNone, 0);
+    EXPECT_TRUE(robot.link_pose(0).matrix() == statics.link_pose(0).matrix());
+    EXPECT_FALSE(robot.link_pose(0).matrix() == pulled.matrix());
+    // The low-pass begins anew.
+    robot.Forward(kPlan, Six::Constant(10.0), 0);
+    Compensator other(ElasticArm(), options);
+    other.Forward(kPlan, Six::Constant(10.0), 0);
+    EXPECT_TRUE(robot.link_pose(0).matrix() == other.link_pose(0).matrix());
+  }
+}
+
+TEST(RuntimeInput, ForgetForgetsAllInput) {
+  Compensator robot(ElasticArm());
+  const Six unknown = Six::Constant(kNan);
+  constexpr unsigned kNothing = unsigned{EC_BAD_POSITION} | EC_NOTHING_YET;
+  robot.Forward(kPlan, kNone, 0);
+  robot.Correct(kPlan, kNone, 0);
+  robot.Command(kPlan, kNone, 0);
+  robot.Forget();
+  EXPECT_EQ(robot.Forward(unknown, kNone, 0), kNothing);
+  EXPECT_EQ(robot.Correct(unknown, kNone, 0), kNothing);
+  EXPECT_EQ(robot.Command(unknown, kNone, 0), kNothing);
+}
+
+// They are not taken for "no torques", which would mean statics without a word.
+TEST(RuntimeInput, TorquesOfAWrongNumberAreBad) {
+  Compensator robot(ElasticArm());
+  const Eigen::VectorXd seven = Eigen::VectorXd::Constant(7, 60.0);
+  EXPECT_EQ(robot.Forward(kPlan, seven, 0), unsigned{EC_BAD_TORQUE});
+  EXPECT_EQ(robot.Correct(kPlan, seven, 0) & EC_BAD_TORQUE, unsigned{EC_BAD_TORQUE});
+  EXPECT_EQ(robot.Command(kPlan, seven, 0), unsigned{EC_BAD_TORQUE});
+  const Eigen::Isometry3d target(Eigen::Translation3d(0.3, 0.2, 0.4));
+  EXPECT_EQ(robot.Command(&target, kPlan, seven, 0) & EC_BAD_TORQUE, unsigned{EC_BAD_TORQUE});
+}
+
 // An unknown foot is replaced by the last good support of the same function.
 TEST(RuntimeInput, EachFunctionKeepsItsOwnSupport) {
   RuntimeModel model = ElasticArm();

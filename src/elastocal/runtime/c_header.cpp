@@ -303,8 +303,14 @@ class CHeaderWriter {
             "static inline void "
          << name_ << "_ease_changes(" << name_ << "_state* s, double calls) {\n"
          << "  ec_ease_changes(calls, &s->memory);\n}\n\n";
-    out_ << "/* Forgets the last command, see ec_forget above. */\nstatic inline void " << name_
-         << "_forget(" << name_ << "_state* s) { ec_forget(&s->memory); }\n\n";
+    out_ << "/* Forgets the last command and all input, see ec_forget above. */\n"
+            "static inline void "
+         << name_ << "_forget(" << name_ << "_state* s) {\n"
+         << "  ec_forget(&" << name_ << "_robot, &s->memory);\n}\n\n";
+    out_ << "/* Begins from the command at which the drives are, see ec_start_from above. */\n"
+            "static inline int "
+         << name_ << "_start_from(" << name_ << "_state* s, const double* command) {\n"
+         << "  return ec_start_from(&" << name_ << "_robot, command, &s->memory);\n}\n\n";
   }
 
   void Functions() {

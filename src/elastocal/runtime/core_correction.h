@@ -162,7 +162,7 @@ static inline unsigned ec_command_for(const ec_robot* robot, int has_targets, un
   int c;
   if (status & EC_NOTHING_YET) {
     for (c = 0; c < robot->coordinates; ++c) {
-      command[c] = input->q[c];
+      command[c] = memory->has_start ? memory->given[c] : input->q[c];
       memory->stopped[c] = EC_FINE;
     }
     residual[0] = residual[1] = 0.0;

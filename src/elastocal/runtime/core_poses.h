@@ -19,15 +19,17 @@
 /* What a call has to say, as bits. 0 is fine. */
 enum {
   EC_FINE = 0,
-  EC_BAD_POSITION = 1,    /* a position is not finite, or beyond 1e9: the last good positions were
-                             used */
-  EC_BAD_TORQUE = 2,      /* so is a torque: the last good one was used, or else statics */
-  EC_BAD_SUPPORT = 4,     /* no such foot: the last good support was used */
-  EC_DEFLECTION_CUT = 8,  /* a deflection was larger than its limit: cut to it */
+  EC_BAD_POSITION = 1,   /* a position is not finite, or beyond 1e9: the last good positions were
+                            used */
+  EC_BAD_TORQUE = 2,     /* so is a torque, or their number is wrong: the last good one was used, or
+                            else statics */
+  EC_BAD_SUPPORT = 4,    /* no such foot: the last good support was used */
+  EC_DEFLECTION_CUT = 8, /* a deflection was larger than its limit: cut to it */
   EC_CORRECTION_CUT = 16, /* the limit of corrections, or of their change from the last call, keeps
                              an end of a limb off, or cut one */
   EC_JOINT_LIMIT = 32,    /* the limit of a joint keeps the end of a limb from its place */
-  EC_NOTHING_YET = 64     /* bad input before any good one: nominal, no correction */
+  EC_NOTHING_YET = 64 /* bad input before any good one: nominal, no correction; of a command, the
+                         one of ec_start_from */
 };
 
 typedef struct {
@@ -177,6 +179,7 @@ typedef struct {
   double common[3];      /* point of pressure less the centre of the sole, the same for all feet */
   unsigned last_support;
   int has_last, had_torque;
+  int has_start;  /* `given` is the command of ec_start_from, and no plan has followed */
   int is_bound;   /* commands are between `lowest` and `highest` */
   int is_settled; /* the last command is at none of them */
 } ec_memory;
