@@ -89,8 +89,30 @@ static inline unsigned ec_forward(const ec_robot* robot, const double* q, const 
   return status;
 }
 
+/* Positions with which the joints of a rigid robot stand as the deflected ones do, about their own
+   axes: of joints that share a coordinate by least squares, in which a radian of each counts as
+   much, and as EC_ARM metres of a slide. Two fingers that both give way by the same angle are a
+   change of their common position by this angle, not by twice. */
+static inline void ec_deflected_positions(const ec_robot* robot, const double* q, ec_memory* memory,
+                                          double* positions, unsigned* status) {
+  double *sum = memory->kept_q, *square = memory->best_q;
+  int c, k;
+  for (c = 0; c < robot->coordinates; ++c) sum[c] = square[c] = 0.0;
+  for (k = 0; k < robot->joints; ++k) {
+    const ec_joint* joint = &robot->calibrated[k];
+    const double weight = joint->prismatic ? 1.0 / (EC_ARM * EC_ARM) : 1.0;
+    const double deflection = memory->shift[k] + ec_give_way(robot, k, memory, status);
+    sum[joint->coordinate] += weight * joint->multiplier * deflection;
+    square[joint->coordinate] += weight * joint->multiplier * joint->multiplier;
+  }
+  for (c = 0; c < robot->coordinates; ++c) {
+    positions[c] = q[c] + (square[c] > 0.0 ? sum[c] / square[c] : 0.0);
+  }
+}
+
 /* Positions with which the rigid calibrated robot has the ends of its limbs (and so stands) where
-   the real one has them at q: `rigid`, by coordinate. `displacement`: how far the real root link is
+   the real one has them at q: `rigid`, by coordinate. One that moves no end of a limb is where its
+   joints are (ec_deflected_positions). `displacement`: how far the real root link is
    from that of the rigid calibrated robot at q, on the same feet: translation of its origin [m],
    then rotation vector [rad], in the axes of the first foot that stands. */
 static inline unsigned ec_correct(const ec_robot* robot, const double* q, const double* torque,
@@ -100,7 +122,7 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
   const ec_input* input = &memory->input[EC_OF_CORRECT];
   double gravity[3], turn[9], *start = memory->work_q;
   ec_pose straight[32], root, rigid_root;
-  int c, i, k;
+  int c, i;
   q = input->q;
   if (status & EC_NOTHING_YET) {
     for (c = 0; c < robot->coordinates; ++c) rigid[c] = q[c];
@@ -119,16 +141,7 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
   }
   ec_log(turn, &displacement[3]);
   for (i = 0; i < 3; ++i) displacement[i] = root.p[i] - rigid_root.p[i];
-  /* What turns about the joints' own axes is a change of position; the rest is fitted. */
-  for (c = 0; c < robot->coordinates; ++c) start[c] = q[c];
-  for (k = 0; k < robot->joints; ++k) {
-    const ec_joint* joint = &robot->calibrated[k];
-    if (joint->multiplier != 1.0) continue;
-    start[joint->coordinate] +=
-        memory->shift[k] + ec_cut(joint->compliance[2] * memory->load[3 * k + 2],
-                                  joint->prismatic ? robot->largest_shift : robot->largest_turn,
-                                  EC_DEFLECTION_CUT, &status);
-  }
+  ec_deflected_positions(robot, q, memory, start, &status);
   for (c = 0; c < robot->coordinates; ++c) rigid[c] = start[c];
   for (i = 0; i < 2; ++i) {
     ec_move(robot, robot->calibrated, rigid, memory);

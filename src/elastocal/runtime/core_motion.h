@@ -94,13 +94,43 @@ static inline double ec_shift_of(const ec_robot* robot, int i, const double* q,
   }
 }
 
+/* The limit of a joint's deflection about (of a slide, along) its axis. */
+static inline double ec_most_deflection(const ec_robot* robot, const ec_joint* joint) {
+  return joint->prismatic ? robot->largest_shift : robot->largest_turn;
+}
+
+/* How far the load turns (or shifts) joint k by its spring. */
+static inline double ec_give_way(const ec_robot* robot, int k, const ec_memory* memory,
+                                 unsigned* status) {
+  const ec_joint* joint = &robot->calibrated[k];
+  return ec_cut(joint->compliance[2] * memory->load[3 * k + 2], ec_most_deflection(robot, joint),
+                EC_DEFLECTION_CUT, status);
+}
+
+/* What of a shift by the load's square joint k makes beside its spring, so that its whole
+   deflection is within the limit. */
+static inline double ec_stiffen(const ec_robot* robot, int k, double shift, const ec_memory* memory,
+                                unsigned* status) {
+  const ec_joint* joint = &robot->calibrated[k];
+  const double spring = joint->compliance[2] * memory->load[3 * k + 2];
+  unsigned cut = EC_FINE; /* the spring's own is said where it deflects */
+  return ec_cut(spring + shift, ec_most_deflection(robot, joint), EC_DEFLECTION_CUT, status) -
+         ec_give_way(robot, k, memory, &cut);
+}
+
 /* After ec_move of the calibrated joints to q: shifts them by what the calibration found beside
    geometry and springs, under the loads in memory. */
-static inline void ec_shift_joints(const ec_robot* robot, const double* q, ec_memory* memory) {
+static inline void ec_shift_joints(const ec_robot* robot, const double* q, ec_memory* memory,
+                                   unsigned* status) {
   int i, k;
   for (k = 0; k < robot->joints; ++k) memory->shift[k] = 0.0;
   for (i = 0; i < robot->shifts; ++i) {
-    memory->shift[robot->shift[i].joint] += ec_shift_of(robot, i, q, memory);
+    double shift = ec_shift_of(robot, i, q, memory);
+    k = robot->shift[i].joint;
+    if (robot->shift[i].function == EC_STIFFENING) {
+      shift = ec_stiffen(robot, k, shift, memory, status);
+    }
+    memory->shift[k] += shift;
   }
   for (k = 0; k < robot->joints; ++k) {
     const ec_joint* joint = &robot->calibrated[k];

@@ -342,7 +342,7 @@ static inline void ec_settle(const ec_robot* robot, const double* q, unsigned su
   int i;
   for (i = 0; i < 2; ++i) {
     ec_loads(robot, robot->calibrated, support, torque, memory, gravity);
-    ec_shift_joints(robot, q, memory);
+    ec_shift_joints(robot, q, memory, status);
     ec_walk(robot, robot->calibrated, 1, memory, status);
   }
   ec_sole_poses(robot, 1, gravity, memory, status);
