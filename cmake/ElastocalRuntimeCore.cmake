@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The run-time core as text, for the headers that `elastocal export` writes.
 set(core_text "/* SPDX-License-Identifier: Apache-2.0 */\n")
-foreach(part poses motion statics equations step reach ease follow correction)
+foreach(part poses motion statics equations step reach ease follow input correction)
   set(file ${PROJECT_SOURCE_DIR}/src/elastocal/runtime/core_${part}.h)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
   file(READ ${file} text)

@@ -455,7 +455,8 @@ class Runtime:
         """Of the last correct: how far the root link is from that of the rigid robot on the same feet, (6,):
         translation in m, then rotation vector in rad, in the axes of the first foot that stands."""
     def forget(self) -> None:
-        """Lets the next command be found by itself. Commands near the last one go on from it, as along a motion."""
+        """Lets the next command be found by itself, and forgets the last input. Commands near the last one go on from
+        it, as along a motion."""
     def forward(self, q: _Positions, torque: ArrayLike = ..., feet: int = 0) -> dict[str, Any]:
         """Poses (4, 4) in m of all 'links' in the root link's frame, with deflection, of the 'root', and the
         'status'. q: (joints,), rad or m, or a dict of joints, the others being at 0. torque: (all joints of the

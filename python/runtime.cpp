@@ -125,9 +125,10 @@ void AddRuntime(py::module_& module) {
           "Of the last correct: how far the root link is from that of the rigid robot on the same "
           "feet, (6,): translation in m, then rotation vector in rad, in the axes of the first "
           "foot that stands.")
-      .def("forget", &PyRuntime::Forget,
-           "Lets the next command be found by itself. Commands near the last one go on from it, as "
-           "along a motion.")
+      .def(
+          "forget", &PyRuntime::Forget,
+          "Lets the next command be found by itself, and forgets the last input. Commands near the "
+          "last one go on from it, as along a motion.")
       .def("forward", &PyRuntime::Forward, "q"_a, "torque"_a = none, "feet"_a = 0u,
            with_arguments("Poses (4, 4) in m of all 'links' in the root link's frame, with "
                           "deflection, of the 'root', and the 'status'.")

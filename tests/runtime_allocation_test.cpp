@@ -46,12 +46,16 @@ TEST(RuntimeAllocation, NoCallAllocates) {
   counting = true;
   robot.LimitChanges(q);
   robot.EaseChanges(10.0);
+  robot.StartFrom(q);
   for (StandingFeet feet : {0U, 1U, 2U, 3U, 7U}) {
     robot.Forward(q, none, feet);
     robot.Correct(q, torque, feet);
     robot.Command(q, none, feet);
     robot.Command(project.motion.lower, none, feet);  // needs a longer search
     robot.Command(targets.data(), q, torque, feet);
+    robot.StartFrom(project.motion.lower);
+    robot.Command(q, none, feet);
+    robot.Forget();
   }
   counting = false;
   EXPECT_EQ(allocations, 0);

@@ -2,6 +2,7 @@
 // Commands of the robot at run time if limits of joints stand in the way.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -142,6 +143,34 @@ TEST_F(Runtime, ACommandIsNeverWorseThanThePlan) {
     const Eigen::VectorXd command = robot.command();
     EXPECT_LE(error(command), error(plan)) << i;
   }
+}
+
+// The right finger is where the left one has it: at -0.002 m less the left one's position, which
+// goes from 0 to 0.04 m.
+TEST(RuntimeLimits, OfADriverAreWithinThoseOfItsFollowers) {
+  Project project = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  const auto find = [&](const char* name) {
+    return static_cast<std::size_t>(FindJoint(project.tree, name));
+  };
+  JointLimits& follower = project.tree.joints[find("finger_right_joint")].limits;
+  const auto range = [&](double lower, double upper) {
+    follower.lower = lower;
+    follower.upper = upper;
+    const RuntimeModel model = MakeRuntimeModel(project, RandomCalibration(project, 1));
+    const auto c = static_cast<std::size_t>(model.calibrated[find("finger_left_joint")].coordinate);
+    return std::pair(model.lower[c], model.upper[c]);
+  };
+  const auto expect = [&](double lower, double upper, double low, double high) {
+    const auto [got_low, got_high] = range(lower, upper);
+    EXPECT_NEAR(got_low, low, 1e-15) << lower << ", " << upper;
+    EXPECT_NEAR(got_high, high, 1e-15) << lower << ", " << upper;
+  };
+  expect(-0.045, 0.0, 0.0, 0.04);
+  expect(-0.032, 0.0, 0.0, 0.03);
+  expect(-0.045, -0.012, 0.01, 0.04);
+  expect(-0.032, -0.012, 0.01, 0.03);
+  expect(0.1, 0.2, 0.0, 0.04);  // it cannot follow at all: passed over
+  expect(0.0, 0.0, 0.0, 0.04);  // no range is given
 }
 
 }  // namespace

@@ -277,6 +277,7 @@ TEST_F(Runtime, BadInputKeepsTheLastGoodOne) {
   garbage[3] = 1e300;
   EXPECT_EQ(robot.Command(garbage, torque.setOnes(), 1), unsigned{EC_BAD_POSITION});
   EXPECT_EQ(robot.command(), with_torque);
+  robot.Forward(q, torque, 1);
   EXPECT_EQ(robot.Forward(garbage, torque, 1), unsigned{EC_BAD_POSITION});
 }
 

@@ -21,6 +21,8 @@ int main(void) {
   for (c = 0; c < ROBOT_Q_COUNT; ++c) most[c] = c % 2 ? 0.005 : -1.0;
   robot_limit_changes(&state, most);
   robot_ease_changes(&state, 4.0);
+  for (c = 0; c < ROBOT_Q_COUNT; ++c) out[c] = 0.01 * c;
+  if (!robot_start_from(&state, out)) return 1;
   while (scanf("%u", &feet) == 1) {
     int i;
     for (i = 0; i < ROBOT_Q_COUNT; ++i) {

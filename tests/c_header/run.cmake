@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Every installed C compiler accepts the header of `elastocal export --format c99` without a
-# warning, and the compiled program gives the same bits as the library.
+# warning, and the compiled program gives the same bits as the library. Bad input is found also
+# where the compiler is told that all numbers are finite.
 #   cmake -DWRITER=... -DSOURCE=... -DWORK=... -P run.cmake
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
@@ -24,4 +25,15 @@ foreach(compiler gcc clang clang-14 g++)
     message(FATAL_ERROR "${compiler}: other bits than the library's, see ${WORK}/${compiler}.txt")
   endif()
   message(STATUS "${compiler}: the same bits")
+  foreach(fast -ffast-math -Ofast -O3\ -ffinite-math-only)
+    separate_arguments(flags UNIX_COMMAND "-O2 ${fast}")
+    execute_process(COMMAND ${${compiler}_found} ${language} ${flags} -I${WORK} ${SOURCE}/fast_math.c
+      -o ${WORK}/${compiler}_fast -lm COMMAND_ERROR_IS_FATAL ANY)
+    execute_process(COMMAND ${WORK}/${compiler}_fast INPUT_FILE ${WORK}/postures.txt
+      OUTPUT_VARIABLE said RESULT_VARIABLE failed)
+    if(failed)
+      message(FATAL_ERROR "${compiler} ${fast}: bad input is taken for good\n${said}")
+    endif()
+    message(STATUS "${compiler} ${fast}: bad input is found")
+  endforeach()
 endforeach()

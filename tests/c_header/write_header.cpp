@@ -40,6 +40,9 @@ int main(int argc, char** argv) {
   for (Eigen::Index c = 0; c < most.size(); ++c) most[c] = c % 2 != 0 ? 0.005 : -1.0;
   robot.LimitChanges(most);
   robot.EaseChanges(4.0);
+  Eigen::VectorXd start = most;
+  for (Eigen::Index c = 0; c < start.size(); ++c) start[c] = 0.01 * static_cast<double>(c);
+  if (!robot.StartFrom(start)) return 1;
   for (int i = 0; i < 60; ++i) {
     const bool goes_on = i >= 40;  // near the last posture, as in a motion
     if (!goes_on) q = project.motion.rest;

@@ -74,6 +74,22 @@ void SetMotion(const Joint& joint, ec_joint& result) {
   result.offset = joint.offset;
 }
 
+/// Cuts the range of each coordinate to what the joints allow that mimic its driver. One that would
+/// leave nothing is passed over.
+void CutToFollowers(const RobotTree& tree, RuntimeModel& model) {
+  for (const Joint& joint : tree.joints) {
+    if (!joint.mimic || joint.multiplier == 0.0) continue;
+    if (!(joint.limits.lower < joint.limits.upper)) continue;
+    const auto [low, high] = std::minmax({(joint.limits.lower - joint.offset) / joint.multiplier,
+                                          (joint.limits.upper - joint.offset) / joint.multiplier});
+    double &lower = model.lower[Size(joint.coordinate)],
+           &upper = model.upper[Size(joint.coordinate)];
+    if (!(std::max<double>(lower, low) < std::min<double>(upper, high))) continue;
+    lower = std::max<double>(lower, low);
+    upper = std::min<double>(upper, high);
+  }
+}
+
 void AddJoints(const StoredRobot& robot, RuntimeContent content, RuntimeModel& model) {
   const RobotTree& tree = robot.model.tree;
   const Geometry geometry = ApplyErrors(robot.model, robot.errors);
@@ -103,6 +119,7 @@ void AddJoints(const StoredRobot& robot, RuntimeContent content, RuntimeModel& m
     model.lower.push_back(joint.limits.lower);
     model.upper.push_back(joint.limits.upper);
   }
+  CutToFollowers(tree, model);
 }
 
 /// The function of the posture by which a correction displaces a joint; nothing where it depends on

@@ -2,21 +2,25 @@
 #include "elastocal/runtime/c_header.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstdio>
+#include <locale>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 
+#include "elastocal/runtime/number_text.hpp"
+
 namespace elastocal {
 namespace {
 
+// Letters and digits of C, whatever the locale of the process counts as such.
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+bool IsLower(char c) { return c >= 'a' && c <= 'z'; }
+bool IsAlnum(char c) { return IsDigit(c) || IsLower(c) || (c >= 'A' && c <= 'Z'); }
+
 std::string CNumber(double value) {
   if (std::isinf(value)) return value > 0 ? "1e308" : "-1e308";
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
+  return NumberText(value);
 }
 
 template <typename List>
@@ -42,6 +46,7 @@ std::string FrameText(const ec_frame& frame) {
 
 std::string JointText(const ec_joint& joint) {
   std::ostringstream out;
+  out.imbue(std::locale::classic());
   out << "{" << joint.parent << ", " << joint.coordinate << ", " << joint.prismatic << ", "
       << CNumber(joint.multiplier) << ", " << CNumber(joint.offset) << ",\n     "
       << PoseText(joint.twisted) << ",\n     " << CNumber(joint.theta) << ", " << CNumber(joint.r)
@@ -69,8 +74,8 @@ std::string ShiftText(const ec_shift& shift) {
 
 std::string UpperName(const std::string& name) {
   std::string upper;
-  for (unsigned char c : name) {
-    upper += std::isalnum(c) != 0 ? static_cast<char>(std::toupper(c)) : '_';
+  for (char c : name) {
+    upper += !IsAlnum(c) ? '_' : IsLower(c) ? static_cast<char>(c - 'a' + 'A') : c;
   }
   return upper;
 }
@@ -99,7 +104,9 @@ std::string CommentText(std::string text) {
 class CHeaderWriter {
  public:
   CHeaderWriter(const Compensator& robot, const CHeaderOptions& options)
-      : robot_(robot.robot()), model_(robot.model()), options_(options), name_(options.prefix) {}
+      : robot_(robot.robot()), model_(robot.model()), options_(options), name_(options.prefix) {
+    out_.imbue(std::locale::classic());  // no separators of thousands
+  }
 
   std::string Write() {
     const std::string guard = UpperName(name_) + "_H";
@@ -255,8 +262,8 @@ class CHeaderWriter {
             {"int", "loosed", largest},
             {"ec_search", "search", robot_.branches},
             {"double", "column", 6 * 64},
-            {"double", "good_q", coordinates},
-            {"double", "good_torque", joints},
+            {"double", "good_q", 3 * coordinates},
+            {"double", "good_torque", 3 * joints},
             {"double", "work_q", coordinates},
             {"double", "best_q", coordinates},
             {"double", "kept_q", coordinates},
@@ -303,8 +310,14 @@ class CHeaderWriter {
             "static inline void "
          << name_ << "_ease_changes(" << name_ << "_state* s, double calls) {\n"
          << "  ec_ease_changes(calls, &s->memory);\n}\n\n";
-    out_ << "/* Forgets the last command, see ec_forget above. */\nstatic inline void " << name_
-         << "_forget(" << name_ << "_state* s) { ec_forget(&s->memory); }\n\n";
+    out_ << "/* Forgets the last command and all input, see ec_forget above. */\n"
+            "static inline void "
+         << name_ << "_forget(" << name_ << "_state* s) {\n"
+         << "  ec_forget(&" << name_ << "_robot, &s->memory);\n}\n\n";
+    out_ << "/* Begins from the command at which the drives are, see ec_start_from above. */\n"
+            "static inline int "
+         << name_ << "_start_from(" << name_ << "_state* s, const double* command) {\n"
+         << "  return ec_start_from(&" << name_ << "_robot, command, &s->memory);\n}\n\n";
   }
 
   void Functions() {
@@ -338,9 +351,8 @@ class CHeaderWriter {
 }  // namespace
 
 bool IsCName(const std::string& name) {
-  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-  return !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0 &&
-         std::all_of(name.begin(), name.end(), fits);
+  const auto fits = [](char c) { return IsAlnum(c) || c == '_'; };
+  return !name.empty() && !IsDigit(name[0]) && std::all_of(name.begin(), name.end(), fits);
 }
 
 std::string MakeCHeader(RuntimeModel model, const CHeaderOptions& options) {

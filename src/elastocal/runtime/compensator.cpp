@@ -57,12 +57,17 @@ void CheckOptions(const CompensatorOptions& options) {
 std::string DescribeStatus(CompensatorStatus status) {
   constexpr std::pair<CompensatorStatus, const char*> kTexts[] = {
       {EC_BAD_POSITION, "positions that are not finite, or too few: the last good ones were used"},
-      {EC_BAD_TORQUE, "a torque that is not finite: its last good value was used"},
+      {EC_BAD_TORQUE,
+       "torques that are not finite, or of a wrong number: the last good ones were used, or those "
+       "of "
+       "statics"},
       {EC_BAD_SUPPORT, "an unknown foot: the last good support was used"},
       {EC_DEFLECTION_CUT, "a deflection beyond its limit was cut"},
       {EC_CORRECTION_CUT, "a correction is at its limit, and the end of a limb not in its place"},
       {EC_JOINT_LIMIT, "a joint is at its limit, and the end of a limb not in its place"},
-      {EC_NOTHING_YET, "no good positions so far: those of the zero posture were used"}};
+      {EC_NOTHING_YET,
+       "no good positions so far: those of the zero posture were used, or the "
+       "command from which the motion starts"}};
   std::string text;
   for (const auto& [bit, words] : kTexts) {
     if ((status & bit) == 0) continue;
@@ -129,8 +134,8 @@ void Compensator::Allocate() {
                                               {&memory_.gradient, largest},
                                               {&memory_.step, largest},
                                               {&memory_.column, 6 * 64},
-                                              {&memory_.good_q, coordinates},
-                                              {&memory_.good_torque, joints},
+                                              {&memory_.good_q, 3 * coordinates},
+                                              {&memory_.good_torque, 3 * joints},
                                               {&memory_.work_q, coordinates},
                                               {&memory_.best_q, coordinates},
                                               {&memory_.kept_q, coordinates},
@@ -178,37 +183,50 @@ const double* Compensator::Torques(const Vector& torque) const noexcept {
   return torque.size() == robot_.joints ? torque.data() : not_finite_.data();
 }
 
+/// Torques of a wrong number, even if none were known before.
+CompensatorStatus Compensator::SizeStatus(const Vector& torque) const noexcept {
+  return torque.size() == 0 || torque.size() == robot_.joints ? EC_FINE : EC_BAD_TORQUE;
+}
+
 CompensatorStatus Compensator::Forward(const Vector& q, const Vector& torque,
                                        StandingFeet feet) noexcept {
-  return ec_forward(&robot_, Positions(q), Torques(torque), feet, &memory_, links_, &root_);
+  return SizeStatus(torque) |
+         ec_forward(&robot_, Positions(q), Torques(torque), feet, &memory_, links_, &root_);
 }
 
 CompensatorStatus Compensator::Correct(const Vector& q, const Vector& torque,
                                        StandingFeet feet) noexcept {
-  return ec_correct(&robot_, Positions(q), Torques(torque), feet, &memory_, rigid_.data(),
-                    displacement_.data());
+  return SizeStatus(torque) | ec_correct(&robot_, Positions(q), Torques(torque), feet, &memory_,
+                                         rigid_.data(), displacement_.data());
 }
 
 CompensatorStatus Compensator::Command(const Vector& nominal, const Vector& torque,
                                        StandingFeet feet) noexcept {
-  return ec_command(&robot_, Positions(nominal), Torques(torque), feet, &memory_, command_.data(),
-                    residual_);
+  return SizeStatus(torque) | ec_command(&robot_, Positions(nominal), Torques(torque), feet,
+                                         &memory_, command_.data(), residual_);
 }
 
 CompensatorStatus Compensator::Command(const Eigen::Isometry3d* T_root_tip, const Vector& nominal,
                                        const Vector& torque, StandingFeet feet) noexcept {
   for (int t = 0; t < robot_.tips; ++t) SetPose(T_root_tip[t], wanted_[t]);
-  return ec_command_poses(&robot_, wanted_, Positions(nominal), Torques(torque), feet, &memory_,
-                          command_.data(), residual_);
+  return SizeStatus(torque) | ec_command_poses(&robot_, wanted_, Positions(nominal),
+                                               Torques(torque), feet, &memory_, command_.data(),
+                                               residual_);
 }
 
-void Compensator::LimitChanges(const Vector& most) noexcept {
-  ec_limit_changes(&robot_, most.size() == robot_.coordinates ? most.data() : nullptr, &memory_);
+bool Compensator::LimitChanges(const Vector& most) noexcept {
+  if (most.size() != 0 && most.size() != robot_.coordinates) return false;
+  ec_limit_changes(&robot_, most.size() == 0 ? nullptr : most.data(), &memory_);
+  return true;
 }
 
 void Compensator::EaseChanges(double calls) noexcept { ec_ease_changes(calls, &memory_); }
 
-void Compensator::Forget() noexcept { ec_forget(&memory_); }
+void Compensator::Forget() noexcept { ec_forget(&robot_, &memory_); }
+
+bool Compensator::StartFrom(const Vector& command) noexcept {
+  return ec_start_from(&robot_, Positions(command), &memory_) != 0;
+}
 
 Eigen::Isometry3d Compensator::link_pose(int link) const noexcept {
   return ToIsometry(links_[link]);

@@ -44,15 +44,18 @@ std::string DescribeStatus(CompensatorStatus status);
 /// Positions are by coordinate (RuntimeModel::coordinate_names), rad or m, as measured by encoders.
 /// Torques are by joint (joint_names), N.m or N, as reported by sensors, which balance the load. An
 /// empty vector means no torques: loads then follow from statics. A torque of NaN is unknown:
-/// statics replaces it until a first value comes, afterwards the last value does.
+/// statics replaces it until a first value comes, afterwards the last value does, and the status
+/// says so. A call without torques forgets them: statics replaces one that is then not finite.
+/// Forward, Correct and Command each have their own last positions, torques and feet.
 ///
 /// A joint with hysteresis lies on the side of its play from which it came: in the middle at first,
 /// then by the positions of earlier calls. Measured positions (Forward, Correct) and planned ones
 /// (Command) are followed separately. Calls must therefore come in the order of the motion.
 ///
 /// Invalid input never gives a dangerous command. Positions that are not finite, or of a wrong
-/// number, are replaced by the last valid ones, and an unknown foot by the last valid support; the
-/// status says so.
+/// number, are replaced by the last valid ones of the same function, and an unknown foot by its
+/// last valid support; the status says so. Before any valid ones (EC_NOTHING_YET), a command is
+/// that of StartFrom(), or else the zero posture, which no drive should be sent.
 class Compensator {
  public:
   /// Throws std::invalid_argument for a model without joints or with more than 32 feet, and for
@@ -66,16 +69,23 @@ class Compensator {
 
   const RuntimeModel& model() const noexcept { return model_; }
 
-  /// Starts a new motion: the next Command follows from its plan alone, like the first one. Joints
-  /// with hysteresis stay on their side of the play.
+  /// Forgets the last command and all input: the next Command follows from its plan alone, like the
+  /// first one. Joints with hysteresis stay on their side of the play. For calls that are no
+  /// motion; a robot that moves begins again with StartFrom().
   void Forget() noexcept;
+
+  /// Begins a motion from the command at which the drives are now, by coordinate: LimitChanges()
+  /// holds from the next Command on, as if `command` had been given the call before for the same
+  /// plan. Forgets what Forget() does. Returns false, and changes nothing, for a vector of a wrong
+  /// size or with an entry that is not finite.
+  bool StartFrom(const Eigen::Ref<const Eigen::VectorXd>& command) noexcept;
 
   /// Limits the changes of commands along a motion (see Command) from one call to the next, by
   /// coordinate, rad or m: the largest speed of a joint times the time between calls. The
   /// correction relative to the plan changes by at most a tenth of that. A joint that the plan
   /// moves further moves as far as the plan does. A negative entry or NaN is no limit; an empty
   /// vector removes all limits.
-  void LimitChanges(const Eigen::Ref<const Eigen::VectorXd>& most) noexcept;
+  bool LimitChanges(const Eigen::Ref<const Eigen::VectorXd>& most) noexcept;
 
   /// Eases the corrections along a motion. A correction takes `calls` calls to reach its largest
   /// speed (a tenth of the limit by LimitChanges; a joint without such a limit has none here), and
@@ -161,6 +171,7 @@ class Compensator {
  private:
   const double* Positions(const Eigen::Ref<const Eigen::VectorXd>& q) const noexcept;
   const double* Torques(const Eigen::Ref<const Eigen::VectorXd>& torque) const noexcept;
+  CompensatorStatus SizeStatus(const Eigen::Ref<const Eigen::VectorXd>& torque) const noexcept;
   void Link(const RuntimeBranches& branches, const CompensatorOptions& options);
   void Allocate();
 

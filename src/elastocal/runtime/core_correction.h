@@ -3,97 +3,7 @@
 #ifndef ELASTOCAL_CORE_CORRECTION_H
 #define ELASTOCAL_CORE_CORRECTION_H
 
-#include "elastocal/runtime/core_follow.h"
-
-/* ---- input ---- */
-
-/* Whether a position, torque or length can be one of a robot: finite, and no garbage of memory. */
-static inline int ec_is_sane(double value) { return fabs(value) <= 1e9; }
-
-/* Takes over what is good of the input, and says what is not. `planned`: q are not measured. */
-static inline unsigned ec_take(const ec_robot* robot, const double* q, const double* torque,
-                               unsigned support, int planned, ec_memory* memory) {
-  unsigned status = EC_FINE;
-  int c, k;
-  memory->sides = &memory->side[planned * robot->shifts];
-  for (c = 0; c < robot->coordinates; ++c) {
-    if (!ec_is_sane(q[c])) status |= EC_BAD_POSITION;
-  }
-  if (!(status & EC_BAD_POSITION)) {
-    for (c = 0; c < robot->coordinates; ++c) memory->good_q[c] = q[c];
-    memory->has_good_q = 1;
-    ec_cross_play(robot, memory->good_q, planned, memory);
-  } else if (!memory->has_good_q) {
-    status |= EC_NOTHING_YET;
-  }
-  for (k = 0; torque && k < robot->joints; ++k) {
-    if (ec_is_sane(torque[k])) {
-      double* good = &memory->good_torque[k];
-      *good = isfinite(*good) ? *good + robot->torque_gain * (torque[k] - *good) : torque[k];
-    } else if (isfinite(memory->good_torque[k])) {
-      status |= EC_BAD_TORQUE;
-    }
-  }
-  if (robot->feet < 32 && support >> robot->feet) {
-    status |= EC_BAD_SUPPORT;
-  } else {
-    memory->good_support = support;
-  }
-  return status;
-}
-
-/* ---- what a controller calls ---- */
-
-/* Forgets the last command: the next one is found from its plan alone, as the first one is (and by
-   the side of their play on which joints lie). For a controller that starts again from another
-   place. */
-static inline void ec_forget(ec_memory* memory) { memory->has_last = 0; }
-
-/* From now on a command changes by at most so much from the last one, by coordinate, rad or m (the
-   speed of a joint times the time between calls), unless the plan itself does, and beside the plan
-   by at most a tenth of it. NULL, or an entry that is negative or not finite: no such limit. */
-static inline void ec_limit_changes(const ec_robot* robot, const double* most, ec_memory* memory) {
-  int c;
-  for (c = 0; c < robot->coordinates; ++c) {
-    memory->most_change[c] = most && most[c] >= 0.0 ? most[c] : HUGE_VAL;
-  }
-}
-
-/* From now on corrections of calls along a motion start and end gently: from rest to the largest
-   speed beside the plan, a tenth of the joint's (ec_limit_changes; where that has no limit, the
-   joint has none here), takes so many calls, and so does braking. 0, less or not finite: one call.
-   */
-static inline void ec_ease_changes(double calls, ec_memory* memory) {
-  memory->calls_to_pace = calls > 0.0 && ec_is_sane(calls) ? calls : 0.0;
-}
-
-/* Forgets all input. To be called once before anything else. Until a good position comes, the
-   robot is taken to be at position 0 of all coordinates, within their limits. */
-static inline void ec_reset(const ec_robot* robot, ec_memory* memory) {
-  int c, k;
-  for (c = 0; c < robot->coordinates; ++c) {
-    double q = 0.0;
-    if (q < robot->lower[c]) q = robot->lower[c];
-    if (q > robot->upper[c]) q = robot->upper[c];
-    memory->good_q[c] = q;
-  }
-  for (c = 0; c < robot->coordinates; ++c) {
-    memory->stopped[c] = EC_FINE;
-    memory->most_change[c] = HUGE_VAL;
-    memory->pace[c] = 0.0;
-  }
-  memory->calls_to_pace = 0.0;
-  for (k = 0; k < robot->branches; ++k) memory->search[k].left = 0.0;
-  for (k = 0; k < 2 * robot->shifts; ++k) {
-    memory->side[k] = 0.0;
-    memory->from[k] = nan("");
-  }
-  for (k = 0; k < robot->joints; ++k) memory->good_torque[k] = nan("");
-  memory->good_support = 0;
-  memory->has_good_q = 0;
-  memory->is_bound = memory->is_settled = memory->had_torque = 0;
-  ec_forget(memory);
-}
+#include "elastocal/runtime/core_input.h"
 
 /* Pose of the root link in the frame of the first foot that stands, by the leg between them; a held
    root link is its own reference. Other feet that stand say nothing of it: how they stand against
@@ -164,32 +74,56 @@ static inline void ec_place_feet(const ec_robot* robot, const ec_memory* memory,
 static inline unsigned ec_forward(const ec_robot* robot, const double* q, const double* torque,
                                   unsigned support, ec_memory* memory, ec_pose* links,
                                   ec_pose* root) {
-  unsigned status = ec_take(robot, q, torque, support, 0, memory);
+  unsigned status = ec_take(robot, q, torque, support, EC_OF_FORWARD, memory);
+  const ec_input* input = &memory->input[EC_OF_FORWARD];
   double gravity[3];
   int i;
-  ec_move(robot, robot->calibrated, memory->good_q, memory);
+  ec_move(robot, robot->calibrated, input->q, memory);
   ec_walk(robot, robot->calibrated, 0, memory, &status);
-  ec_settle(robot, memory->good_q, memory->good_support, torque ? memory->good_torque : torque,
-            memory, gravity, &status);
+  ec_settle(robot, input->q, input->support, torque ? input->torque : torque, memory, gravity,
+            &status);
   for (i = 0; i < robot->links; ++i) {
     ec_compose(&memory->body[robot->link[i].body], &robot->link[i].pose, &links[i]);
   }
-  ec_root_on_first(robot, memory->good_support, memory->sole, root);
+  ec_root_on_first(robot, input->support, memory->sole, root);
   return status;
 }
 
+/* Positions with which the joints of a rigid robot stand as the deflected ones do, about their own
+   axes: of joints that share a coordinate by least squares, in which a radian of each counts as
+   much, and as EC_ARM metres of a slide. Two fingers that both give way by the same angle are a
+   change of their common position by this angle, not by twice. */
+static inline void ec_deflected_positions(const ec_robot* robot, const double* q, ec_memory* memory,
+                                          double* positions, unsigned* status) {
+  double *sum = memory->kept_q, *square = memory->best_q;
+  int c, k;
+  for (c = 0; c < robot->coordinates; ++c) sum[c] = square[c] = 0.0;
+  for (k = 0; k < robot->joints; ++k) {
+    const ec_joint* joint = &robot->calibrated[k];
+    const double weight = joint->prismatic ? 1.0 / (EC_ARM * EC_ARM) : 1.0;
+    const double deflection = memory->shift[k] + ec_give_way(robot, k, memory, status);
+    sum[joint->coordinate] += weight * joint->multiplier * deflection;
+    square[joint->coordinate] += weight * joint->multiplier * joint->multiplier;
+  }
+  for (c = 0; c < robot->coordinates; ++c) {
+    positions[c] = q[c] + (square[c] > 0.0 ? sum[c] / square[c] : 0.0);
+  }
+}
+
 /* Positions with which the rigid calibrated robot has the ends of its limbs (and so stands) where
-   the real one has them at q: `rigid`, by coordinate. `displacement`: how far the real root link is
+   the real one has them at q: `rigid`, by coordinate. One that moves no end of a limb is where its
+   joints are (ec_deflected_positions). `displacement`: how far the real root link is
    from that of the rigid calibrated robot at q, on the same feet: translation of its origin [m],
    then rotation vector [rad], in the axes of the first foot that stands. */
 static inline unsigned ec_correct(const ec_robot* robot, const double* q, const double* torque,
                                   unsigned support, ec_memory* memory, double* rigid,
                                   double* displacement) {
-  unsigned status = ec_take(robot, q, torque, support, 0, memory);
+  unsigned status = ec_take(robot, q, torque, support, EC_OF_CORRECT, memory);
+  const ec_input* input = &memory->input[EC_OF_CORRECT];
   double gravity[3], turn[9], *start = memory->work_q;
   ec_pose straight[32], root, rigid_root;
-  int c, i, k;
-  q = memory->good_q;
+  int c, i;
+  q = input->q;
   if (status & EC_NOTHING_YET) {
     for (c = 0; c < robot->coordinates; ++c) rigid[c] = q[c];
     for (i = 0; i < 6; ++i) displacement[i] = 0.0;
@@ -198,26 +132,16 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
   ec_move(robot, robot->calibrated, q, memory);
   ec_walk(robot, robot->calibrated, 0, memory, &status);
   ec_place_feet(robot, memory, straight);
-  ec_settle(robot, q, memory->good_support, torque ? memory->good_torque : torque, memory, gravity,
-            &status);
+  ec_settle(robot, q, input->support, torque ? input->torque : torque, memory, gravity, &status);
   ec_tip_poses(robot, memory, memory->target);
-  ec_root_on_first(robot, memory->good_support, memory->sole, &root);
-  ec_root_on_feet(robot, memory->good_support, memory->sole, straight, memory->share, &rigid_root);
+  ec_root_on_first(robot, input->support, memory->sole, &root);
+  ec_root_on_feet(robot, input->support, memory->sole, straight, memory->share, &rigid_root);
   for (i = 0; i < 9; ++i) {
     turn[i] = ec_dot(&root.R[3 * (i / 3)], &rigid_root.R[3 * (i % 3)]);
   }
   ec_log(turn, &displacement[3]);
   for (i = 0; i < 3; ++i) displacement[i] = root.p[i] - rigid_root.p[i];
-  /* What turns about the joints' own axes is a change of position; the rest is fitted. */
-  for (c = 0; c < robot->coordinates; ++c) start[c] = q[c];
-  for (k = 0; k < robot->joints; ++k) {
-    const ec_joint* joint = &robot->calibrated[k];
-    if (joint->multiplier != 1.0) continue;
-    start[joint->coordinate] +=
-        memory->shift[k] + ec_cut(joint->compliance[2] * memory->load[3 * k + 2],
-                                  joint->prismatic ? robot->largest_shift : robot->largest_turn,
-                                  EC_DEFLECTION_CUT, &status);
-  }
+  ec_deflected_positions(robot, q, memory, start, &status);
   for (c = 0; c < robot->coordinates; ++c) rigid[c] = start[c];
   for (i = 0; i < 2; ++i) {
     ec_move(robot, robot->calibrated, rigid, memory);
@@ -232,31 +156,50 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
   return status;
 }
 
+/* Whether all poses of the ends of limbs are finite. */
+static inline int ec_are_sane(const ec_robot* robot, const ec_pose* targets) {
+  int t, i, good = 1;
+  for (t = 0; t < robot->tips; ++t) {
+    for (i = 0; i < 9; ++i) good = good && ec_is_sane(targets[t].R[i]);
+    for (i = 0; i < 3; ++i) good = good && ec_is_sane(targets[t].p[i]);
+  }
+  return good;
+}
+
+/* ec_command and ec_command_poses: for the poses in memory->target, or those of the nominal robot.
+ */
+static inline unsigned ec_command_for(const ec_robot* robot, int has_targets, unsigned status,
+                                      const double* torque, ec_memory* memory, double* command,
+                                      double* residual) {
+  const ec_input* input = &memory->input[EC_OF_COMMAND];
+  int c;
+  if (status & EC_NOTHING_YET) {
+    for (c = 0; c < robot->coordinates; ++c) {
+      command[c] = memory->has_start ? memory->given[c] : input->q[c];
+      memory->stopped[c] = EC_FINE;
+    }
+    residual[0] = residual[1] = 0.0;
+    return status;
+  }
+  if (!has_targets) {
+    ec_move(robot, robot->nominal, input->q, memory);
+    ec_walk(robot, robot->nominal, 0, memory, &status);
+    ec_place_feet(robot, memory, memory->sole);
+    ec_tip_poses(robot, memory, memory->target);
+  }
+  ec_reach(robot, input->q, torque ? input->torque : torque, input->support, has_targets, memory,
+           command, residual, &status);
+  return status;
+}
+
 /* Commands with which the real robot has hands, feet and waist where the nominal robot has them at
    `nominal`. `torque`: those of the planned motion, by joint, or null: statics. `residual`: largest
    distance [m] and angle [rad] that is left at the end of a limb that does not yield (ec_tip). */
 static inline unsigned ec_command(const ec_robot* robot, const double* nominal,
                                   const double* torque, unsigned support, ec_memory* memory,
                                   double* command, double* residual) {
-  unsigned status = ec_take(robot, nominal, torque, support, 1, memory);
-  ec_pose placed[32];
-  int f, c;
-  if (status & EC_NOTHING_YET) {
-    for (c = 0; c < robot->coordinates; ++c) {
-      command[c] = memory->good_q[c];
-      memory->stopped[c] = EC_FINE;
-    }
-    residual[0] = residual[1] = 0.0;
-    return status;
-  }
-  ec_move(robot, robot->nominal, memory->good_q, memory);
-  ec_walk(robot, robot->nominal, 0, memory, &status);
-  ec_place_feet(robot, memory, placed);
-  for (f = 0; f < robot->feet; ++f) memory->sole[f] = placed[f];
-  ec_tip_poses(robot, memory, memory->target);
-  ec_reach(robot, memory->good_q, torque ? memory->good_torque : torque, memory->good_support, 0,
-           memory, command, residual, &status);
-  return status;
+  const unsigned status = ec_take(robot, nominal, torque, support, EC_OF_COMMAND, memory);
+  return ec_command_for(robot, 0, status, torque, memory, command, residual);
 }
 
 /* The same for poses of the ends of the limbs in the root link's frame, by tip; `nominal` is the
@@ -266,19 +209,12 @@ static inline unsigned ec_command_poses(const ec_robot* robot, const ec_pose* ta
                                         const double* nominal, const double* torque,
                                         unsigned support, ec_memory* memory, double* command,
                                         double* residual) {
-  unsigned status = ec_take(robot, nominal, torque, support, 1, memory);
-  int t, i, good = 1;
-  for (t = 0; t < robot->tips; ++t) {
-    for (i = 0; i < 9; ++i) good = good && ec_is_sane(targets[t].R[i]);
-    for (i = 0; i < 3; ++i) good = good && ec_is_sane(targets[t].p[i]);
-  }
-  if (!good)
-    return ec_command(robot, memory->good_q, torque, support, memory, command, residual) |
-           EC_BAD_POSITION;
-  for (t = 0; t < robot->tips; ++t) memory->target[t] = targets[t];
-  ec_reach(robot, memory->good_q, torque ? memory->good_torque : torque, memory->good_support, 1,
-           memory, command, residual, &status);
-  return status;
+  unsigned status = ec_take(robot, nominal, torque, support, EC_OF_COMMAND, memory);
+  const int good = ec_are_sane(robot, targets);
+  int t;
+  if (!good) status |= EC_BAD_POSITION;
+  for (t = 0; good && t < robot->tips; ++t) memory->target[t] = targets[t];
+  return ec_command_for(robot, good, status, torque, memory, command, residual);
 }
 
 #endif /* ELASTOCAL_CORE_CORRECTION_H */

@@ -20,8 +20,8 @@ static inline double ec_most_change_of_pace(const ec_memory* memory, int c) {
   return EC_GENTLE * memory->most_change[c] / memory->calls_to_pace;
 }
 
-/* How many calls' worth of change are between `wanted` and the pace (or, if not `from_pace`, rest) of
-   a branch's coordinates: the most of them. */
+/* How many calls' worth of change are between `wanted` and the pace (or, if not `from_pace`, rest)
+   of a branch's coordinates: the most of them. */
 static inline double ec_most_calls(const ec_robot* robot, int branch, const double* wanted,
                                    int from_pace, const ec_memory* memory) {
   double most = 0.0;
@@ -56,20 +56,27 @@ static inline double ec_share_of_way(const ec_robot* robot, int branch, const ec
   return share;
 }
 
+/* By how much a joint may move from the last command that was given: as far as its limit, or as its
+   own plan does. */
+static inline double ec_most_move(const double* nominal, int c, const ec_memory* memory) {
+  const double planned = fabs(nominal[c] - memory->last_q[c]);
+  return memory->most_change[c] > planned ? memory->most_change[c] : planned;
+}
+
 /* Coordinate c goes on with a correction of `pace` further than the last one, as far as limits
    allow: those of the joint, and of its speed but for a plan that is faster. */
 static inline double ec_go_on(const ec_robot* robot, const double* nominal, int c, double pace,
                               const ec_memory* memory) {
   const double planned = nominal[c] - memory->last_q[c], last = memory->given[c];
-  double q = last + planned + pace, most = memory->most_change[c];
-  if (most < fabs(planned)) most = fabs(planned);
+  const double most = ec_most_move(nominal, c, memory);
+  double q = last + planned + pace;
   if (q > last + most) q = last + most;
   if (q < last - most) q = last - most;
   return ec_within(robot, memory, nominal, c, q);
 }
 
-/* The way of each coordinate from the last command that was given to the goal, beside the plan, into
-   memory->work_q; how far the goal went, into memory->kept_q. The goal is remembered. */
+/* The way of each coordinate from the last command that was given to the goal, beside the plan,
+   into memory->work_q; how far the goal went, into memory->kept_q. The goal is remembered. */
 static inline void ec_see_goal(const ec_robot* robot, const double* nominal, const double* goal,
                                ec_memory* memory) {
   int c;
@@ -108,25 +115,16 @@ static inline int ec_ease_branch(const ec_robot* robot, int branch, const double
   return 1;
 }
 
-/* Takes the command from the goal in `command` to one that follows it gently, in place. `at_once`:
-   the goal has nothing to do with the last one. Returns whether it is not the goal; then it ends
-   with a walk there, which says in `status` what of the robot was cut. */
-static inline int ec_ease(const ec_robot* robot, const double* nominal, const double* torque,
-                          unsigned support, int at_once, ec_memory* memory, double* command,
-                          unsigned* status) {
-  int branch, c, eased = 0;
-  if (at_once || !(memory->calls_to_pace > 0.0)) {
-    for (c = 0; c < robot->coordinates; ++c) {
-      memory->given[c] = memory->last_command[c] = command[c];
-      memory->pace[c] = 0.0;
-    }
-    return 0;
-  }
+/* Takes the command from the goal in `command` to one that follows it gently, in place. Where it is
+   not the goal, this ends with a walk there, which says in `status` what of the robot was cut. */
+static inline void ec_ease(const ec_robot* robot, const double* nominal, const double* torque,
+                           unsigned support, ec_memory* memory, double* command, unsigned* status) {
+  int branch, eased = 0;
   ec_see_goal(robot, nominal, command, memory);
   memory->is_bound = 0; /* the joints' own limits alone */
   for (branch = 0; branch < robot->branches; ++branch) {
     memory->search[branch].state = EC_DONE;
-    memory->search[branch].cost = HUGE_VAL;
+    memory->search[branch].cost = EC_HUGE;
     if (!ec_ease_branch(robot, branch, nominal, memory, command)) continue;
     ec_begin(&memory->search[branch]);
     eased = 1;
@@ -138,11 +136,52 @@ static inline int ec_ease(const ec_robot* robot, const double* nominal, const do
     ec_walk_command(robot, command, torque, support, memory, status);
     ec_all_cost(robot, nominal, command, memory);
   }
+}
+
+/* Where `command` moves joints further than they may: no further, in place, and the others do for
+   their branches what they can. Then it ends with a walk there, as ec_ease. */
+static inline void ec_hold_back(const ec_robot* robot, const double* nominal, const double* torque,
+                                unsigned support, ec_memory* memory, double* command,
+                                unsigned* status) {
+  int branch, c, held = 0;
+  for (branch = 0; branch < robot->branches; ++branch) memory->search[branch].state = EC_DONE;
   for (c = 0; c < robot->coordinates; ++c) {
-    memory->pace[c] = command[c] - memory->given[c] - (nominal[c] - memory->last_q[c]);
-    memory->given[c] = command[c];
+    const double most = ec_most_move(nominal, c, memory), last = memory->given[c];
+    double q = command[c];
+    if (q > last + most) q = last + most;
+    if (q < last - most) q = last - most;
+    memory->best_q[c] = q;
+    if (q == command[c]) continue;
+    held = 1;
+    branch = robot->branch_of_coordinate[c];
+    if (branch >= 0) ec_begin(&memory->search[branch]);
   }
-  return eased;
+  if (!held) return;
+  for (c = 0; c < robot->coordinates; ++c) {
+    const double most = ec_most_move(nominal, c, memory);
+    command[c] = memory->best_q[c];
+    memory->lowest[c] = memory->given[c] - most;
+    memory->highest[c] = memory->given[c] + most;
+  }
+  memory->is_bound = 1;
+  memory->is_settled = 0;
+  *status = EC_FINE;
+  ec_search_all(robot, nominal, torque, support, memory, command);
+  ec_walk_command(robot, command, torque, support, memory, status);
+  ec_all_cost(robot, nominal, command, memory);
+}
+
+/* Remembers the command that is given. `is_goal`: later ones go on from it, and not from a better
+   one that it follows. */
+static inline void ec_give(const ec_robot* robot, const double* nominal, int is_goal,
+                           const double* command, ec_memory* memory) {
+  int c;
+  for (c = 0; c < robot->coordinates; ++c) {
+    const double planned = nominal[c] - memory->last_q[c];
+    memory->pace[c] = is_goal ? 0.0 : command[c] - memory->given[c] - planned;
+    memory->given[c] = command[c];
+    if (is_goal) memory->last_command[c] = command[c];
+  }
 }
 
 #endif /* ELASTOCAL_CORE_EASE_H */

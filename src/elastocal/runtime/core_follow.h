@@ -15,6 +15,29 @@
 #define EC_CREEP 2e-4
 #define EC_SLIDE 0.1
 
+/* Makes the last command one beside this plan: as many whole turns of joints that turn without end
+   as lie between are no motion, and the command of ec_start_from counts as one for this plan. */
+static inline void ec_meet(const ec_robot* robot, const double* nominal, ec_memory* memory) {
+  int c, t;
+  if (!memory->has_last && !memory->has_start) return;
+  for (c = 0; c < robot->coordinates; ++c) {
+    const double from = memory->has_start ? memory->given[c] : memory->last_q[c];
+    const double turns = ec_whole_turns(robot, c, nominal[c] - from);
+    memory->given[c] += turns;
+    if (memory->has_start) {
+      memory->last_q[c] = nominal[c];
+      memory->last_command[c] = memory->given[c];
+    } else {
+      memory->last_q[c] += turns;
+      memory->last_command[c] += turns;
+    }
+  }
+  if (!memory->has_start) return;
+  for (t = 0; t < robot->tips; ++t) memory->last_target[t] = memory->target[t];
+  memory->is_settled = 0;
+  memory->has_last = 1;
+}
+
 /* How far the plan is from that of the last command: the largest change of a joint, or of a target
    where `moves` says that these are not the plan's. Negative: they have nothing to do with each
    other. */
@@ -38,13 +61,16 @@ static inline double ec_change(const ec_robot* robot, const double* nominal, int
 
 /* Whether the last command was of the same feet, and its loads from the same source. */
 static inline int ec_is_same(const double* torque, unsigned support, const ec_memory* memory) {
-  return support == memory->last_support && (torque ? 1 : 0) == memory->had_torque;
+  return !memory->has_start && support == memory->last_support &&
+         (torque ? 1 : 0) == memory->had_torque;
 }
 
-/* Where to start: the nominal positions with the last correction. And how far the command may go:
-   it may stay where it was as well as go along with the plan, and a little further to both sides;
-   as far as ever where other feet stand than then, or loads come from elsewhere, because the
-   corrections then jump. In no case faster than a joint may move, but for a plan that does. */
+/* Where to start: the nominal positions with the last correction; a joint that moves no end of a
+   limb at its plan. And how far the command may go: it may stay where it was as well as go along
+   with the plan, and a little further to both sides; as far as ever where other feet stand than
+   then, or loads come from elsewhere, because the corrections then jump. Such a command goes on
+   from the one that was given. In no case faster than a joint may move, but for a plan that does.
+   */
 static inline void ec_stay_near(const ec_robot* robot, const double* nominal, const double* torque,
                                 unsigned support, double change, ec_memory* memory) {
   const int same = ec_is_same(torque, support, memory);
@@ -57,12 +83,17 @@ static inline void ec_stay_near(const ec_robot* robot, const double* nominal, co
     }
   }
   for (c = 0; c < robot->coordinates; ++c) {
-    const double last = memory->last_command[c], gentle = EC_GENTLE * memory->most_change[c];
+    const double last = same ? memory->last_command[c] : memory->given[c];
+    const double gentle = EC_GENTLE * memory->most_change[c];
     const double more = memory->lowest[c] < gentle ? memory->lowest[c] : gentle;
-    const double planned = nominal[c] - memory->last_q[c];
-    const double start = ec_within(robot, memory, nominal, c, last + planned);
-    double most = memory->most_change[c];
-    if (most < fabs(planned)) most = fabs(planned);
+    const double most = ec_most_move(nominal, c, memory);
+    double start = nominal[c];
+    if (robot->branch_of_coordinate[c] >= 0) {
+      start = ec_within(robot, memory, nominal, c, last + (nominal[c] - memory->last_q[c]));
+    }
+    if (start < last - most) start = last - most;
+    if (start > last + most) start = last + most;
+    memory->last_command[c] = last;
     memory->start_q[c] = start;
     memory->lowest[c] = (start < last ? start : last) - more;
     memory->highest[c] = (start > last ? start : last) + more;
@@ -94,7 +125,7 @@ static inline unsigned ec_follow(const ec_robot* robot, const double* nominal, c
   for (c = 0; c < robot->coordinates; ++c) command[c] = memory->start_q[c];
   ec_start(robot, torque, support, memory, command, status);
   memory->is_bound = 1;
-  if (!(change > 0.0) && support == memory->last_support) {
+  if (!(change > 0.0) && !memory->has_start && support == memory->last_support) {
     unsigned cut = EC_FINE;
     ec_walk_command(robot, command, torque, support, memory, &cut); /* loads as deflected */
     ec_walk_command(robot, command, torque, support, memory, &at_end);
@@ -113,9 +144,12 @@ static inline unsigned ec_follow(const ec_robot* robot, const double* nominal, c
 static inline void ec_reach(const ec_robot* robot, const double* nominal, const double* torque,
                             unsigned support, int moves, ec_memory* memory, double* command,
                             double* residual, unsigned* status) {
-  const double change = ec_change(robot, nominal, moves, memory);
+  double change;
   unsigned at_end;
-  int c, t;
+  int c, t, is_goal;
+  ec_meet(robot, nominal, memory);
+  change = ec_change(robot, nominal, moves, memory);
+  is_goal = change < 0.0 || !ec_is_same(torque, support, memory) || !(memory->calls_to_pace > 0.0);
   memory->is_bound = 0;
   if (change < 0.0) {
     at_end = ec_search_anew(robot, nominal, torque, support, memory, command, status);
@@ -131,8 +165,9 @@ static inline void ec_reach(const ec_robot* robot, const double* nominal, const 
     }
   }
   for (t = 0; t < robot->branches; ++t) memory->search[t].last_left = memory->search[t].left;
-  ec_ease(robot, nominal, torque, support, change < 0.0 || !ec_is_same(torque, support, memory),
-          memory, command, &at_end);
+  if (!is_goal) ec_ease(robot, nominal, torque, support, memory, command, &at_end);
+  if (memory->has_last) ec_hold_back(robot, nominal, torque, support, memory, command, &at_end);
+  ec_give(robot, nominal, is_goal, command, memory);
   *status |= at_end | ec_in_the_way(robot, nominal, command, memory);
   ec_residual(robot, memory, residual);
   for (c = 0; c < robot->coordinates; ++c) memory->last_q[c] = nominal[c];
@@ -140,6 +175,7 @@ static inline void ec_reach(const ec_robot* robot, const double* nominal, const 
   memory->last_support = support;
   memory->had_torque = torque ? 1 : 0;
   memory->has_last = 1;
+  memory->has_start = 0;
 }
 
 #endif /* ELASTOCAL_CORE_FOLLOW_H */

@@ -9,6 +9,28 @@ static inline double ec_position(const ec_joint* joint, const double* q) {
   return joint->multiplier * q[joint->coordinate] + joint->offset;
 }
 
+#define EC_TURN 6.283185307179586
+
+/* Whether coordinate c turns without end, so that the robot is the same a turn further on: it has
+   no limits, and all joints that it moves turn by whole turns then. */
+static inline int ec_is_endless(const ec_robot* robot, int c) {
+  int k;
+  if (ec_is_sane(robot->lower[c]) || ec_is_sane(robot->upper[c])) return 0;
+  for (k = 0; k < robot->joints; ++k) {
+    const ec_joint* joint = &robot->calibrated[k];
+    if (joint->coordinate != c) continue;
+    if (joint->prismatic || joint->multiplier != floor(joint->multiplier)) return 0;
+  }
+  return 1;
+}
+
+/* The whole turns in a change of coordinate c, or of a joint that it moves, rad: what is left of
+   the change is the shorter way round. 0 for a coordinate that does not turn without end. */
+static inline double ec_whole_turns(const ec_robot* robot, int c, double change) {
+  if (fabs(change) <= 0.5 * EC_TURN || !ec_is_endless(robot, c)) return 0.0;
+  return EC_TURN * floor(change / EC_TURN + 0.5);
+}
+
 /* The joints' own motion at the positions q, for the walks that follow. */
 static inline void ec_move(const ec_robot* robot, const ec_joint* joints, const double* q,
                            ec_memory* memory) {
@@ -33,9 +55,14 @@ static inline void ec_cross_play(const ec_robot* robot, const double* q, int pla
   int i;
   for (i = 0; i < robot->shifts; ++i) {
     const ec_shift* shift = &robot->shift[i];
-    const double position = ec_position(&robot->calibrated[shift->joint], q);
+    const ec_joint* joint = &robot->calibrated[shift->joint];
+    const double position = ec_position(joint, q);
     if (shift->function != EC_HYSTERESIS || shift->amount == 0.0) continue;
-    if (isfinite(from[i])) side[i] += (position - from[i]) / fabs(shift->amount);
+    if (ec_is_sane(from[i])) {
+      double change = position - from[i];
+      change -= ec_whole_turns(robot, joint->coordinate, change);
+      side[i] += change / fabs(shift->amount);
+    }
     if (side[i] > 1.0) side[i] = 1.0;
     if (side[i] < -1.0) side[i] = -1.0;
     from[i] = position;
@@ -67,13 +94,43 @@ static inline double ec_shift_of(const ec_robot* robot, int i, const double* q,
   }
 }
 
+/* The limit of a joint's deflection about (of a slide, along) its axis. */
+static inline double ec_most_deflection(const ec_robot* robot, const ec_joint* joint) {
+  return joint->prismatic ? robot->largest_shift : robot->largest_turn;
+}
+
+/* How far the load turns (or shifts) joint k by its spring. */
+static inline double ec_give_way(const ec_robot* robot, int k, const ec_memory* memory,
+                                 unsigned* status) {
+  const ec_joint* joint = &robot->calibrated[k];
+  return ec_cut(joint->compliance[2] * memory->load[3 * k + 2], ec_most_deflection(robot, joint),
+                EC_DEFLECTION_CUT, status);
+}
+
+/* What of a shift by the load's square joint k makes beside its spring, so that its whole
+   deflection is within the limit. */
+static inline double ec_stiffen(const ec_robot* robot, int k, double shift, const ec_memory* memory,
+                                unsigned* status) {
+  const ec_joint* joint = &robot->calibrated[k];
+  const double spring = joint->compliance[2] * memory->load[3 * k + 2];
+  unsigned cut = EC_FINE; /* the spring's own is said where it deflects */
+  return ec_cut(spring + shift, ec_most_deflection(robot, joint), EC_DEFLECTION_CUT, status) -
+         ec_give_way(robot, k, memory, &cut);
+}
+
 /* After ec_move of the calibrated joints to q: shifts them by what the calibration found beside
    geometry and springs, under the loads in memory. */
-static inline void ec_shift_joints(const ec_robot* robot, const double* q, ec_memory* memory) {
+static inline void ec_shift_joints(const ec_robot* robot, const double* q, ec_memory* memory,
+                                   unsigned* status) {
   int i, k;
   for (k = 0; k < robot->joints; ++k) memory->shift[k] = 0.0;
   for (i = 0; i < robot->shifts; ++i) {
-    memory->shift[robot->shift[i].joint] += ec_shift_of(robot, i, q, memory);
+    double shift = ec_shift_of(robot, i, q, memory);
+    k = robot->shift[i].joint;
+    if (robot->shift[i].function == EC_STIFFENING) {
+      shift = ec_stiffen(robot, k, shift, memory, status);
+    }
+    memory->shift[k] += shift;
   }
   for (k = 0; k < robot->joints; ++k) {
     const ec_joint* joint = &robot->calibrated[k];

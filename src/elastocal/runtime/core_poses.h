@@ -10,19 +10,26 @@
 #define ELASTOCAL_CORE_POSES_H
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+/* More than any position, torque or limit: none of them. */
+#define EC_HUGE 1e300
 
 /* What a call has to say, as bits. 0 is fine. */
 enum {
   EC_FINE = 0,
-  EC_BAD_POSITION = 1,    /* a position is not finite, or beyond 1e9: the last good positions were
-                             used */
-  EC_BAD_TORQUE = 2,      /* so is a torque: the last good one was used, or else statics */
-  EC_BAD_SUPPORT = 4,     /* no such foot: the last good support was used */
-  EC_DEFLECTION_CUT = 8,  /* a deflection was larger than its limit: cut to it */
+  EC_BAD_POSITION = 1,   /* a position is not finite, or beyond 1e9: the last good positions were
+                            used */
+  EC_BAD_TORQUE = 2,     /* so is a torque, or their number is wrong: the last good one was used, or
+                            else statics */
+  EC_BAD_SUPPORT = 4,    /* no such foot: the last good support was used */
+  EC_DEFLECTION_CUT = 8, /* a deflection was larger than its limit: cut to it */
   EC_CORRECTION_CUT = 16, /* the limit of corrections, or of their change from the last call, keeps
                              an end of a limb off, or cut one */
   EC_JOINT_LIMIT = 32,    /* the limit of a joint keeps the end of a limb from its place */
-  EC_NOTHING_YET = 64     /* bad input before any good one: nominal, no correction */
+  EC_NOTHING_YET = 64 /* bad input before any good one: nominal, no correction; of a command, the
+                         one of ec_start_from */
 };
 
 typedef struct {
@@ -116,6 +123,14 @@ typedef struct {
   double last_left;         /* what the last command leaves */
 } ec_search;
 
+/* The last good input of one function. */
+typedef struct {
+  double* q;      /* coordinates */
+  double* torque; /* joints; EC_UNKNOWN: not known */
+  unsigned support;
+  int has_q;
+} ec_input;
+
 /* Working memory, of the sizes given; all of one call, but the last good input and command. */
 typedef struct {
   ec_pose* body;        /* joints + 1 */
@@ -138,7 +153,7 @@ typedef struct {
   double* start_q;      /* coordinates: the nominal positions with the last correction ... */
   double* lowest;       /* ... and how low and ... */
   double* highest;      /* ... how high a command may be, while `is_bound` */
-  double* most_change;  /* coordinates: limits of a command's change, or infinite */
+  double* most_change;  /* coordinates: limits of a command's change, or EC_HUGE */
   double calls_to_pace; /* a correction changes its pace by that beside a plan in so many calls; 0:
                            at once */
   double* last_q;       /* coordinates: nominal positions of the last command ... */
@@ -149,23 +164,36 @@ typedef struct {
   unsigned* stopped;    /* coordinates: EC_JOINT_LIMIT or EC_CORRECTION_CUT where that limit keeps
                            the end of a limb from where it should be, or EC_FINE */
   ec_pose* target;      /* tips */
-  double* good_q;       /* coordinates */
-  double* good_torque;  /* joints; NaN: never seen */
+  double* good_q;       /* 3 x coordinates: those of `input` ... */
+  double* good_torque;  /* ... and 3 x joints */
+  ec_input input[3];    /* by function, EC_OF_... */
   double* work_q;       /* coordinates */
   double* shift;        /* joints: of their positions, by the calibration's causes */
   double* side; /* 2 x shifts: EC_HYSTERESIS of measured positions, then of those of plans ... */
-  double* from; /* 2 x shifts: ... and the position of the joint then; not finite: none yet */
+  double* from; /* 2 x shifts: ... and the position of the joint then; EC_UNKNOWN: none yet */
   const double* sides;   /* of `side`, those of this call */
   double* centre;        /* 3 x feet: of the soles */
   double* share;         /* feet: of the weight */
   ec_pose* sole;         /* feet */
   double root_moment[2]; /* of the weight about x and y of a held root link, N.m */
   double common[3];      /* point of pressure less the centre of the sole, the same for all feet */
-  unsigned good_support, last_support;
-  int has_good_q, has_last, had_torque;
+  unsigned last_support;
+  int has_last, had_torque;
+  int has_start;  /* `given` is the command of ec_start_from, and no plan has followed */
   int is_bound;   /* commands are between `lowest` and `highest` */
   int is_settled; /* the last command is at none of them */
 } ec_memory;
+
+/* Whether a position, torque or length can be one of a robot: finite, and no garbage of memory. By
+   the bits, which are ordered as the sizes are: compilers that are told that all numbers are finite
+   (-ffast-math) leave out any test of the number itself. */
+static inline int ec_is_sane(double value) {
+  const double most = 1e9;
+  uint64_t bits, most_bits;
+  memcpy(&bits, &value, sizeof bits);
+  memcpy(&most_bits, &most, sizeof most_bits);
+  return (bits & (UINT64_MAX >> 1)) <= most_bits;
+}
 
 /* ---- poses ---- */
 

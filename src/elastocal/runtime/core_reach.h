@@ -110,7 +110,7 @@ static inline void ec_walk_command(const ec_robot* robot, const double* command,
                                    unsigned* status) {
   double gravity[3];
   ec_move(robot, robot->calibrated, command, memory);
-  ec_shift_joints(robot, command, memory);
+  ec_shift_joints(robot, command, memory, status);
   ec_walk(robot, robot->calibrated, 1, memory, status);
   ec_loads(robot, robot->calibrated, support, torque, memory, gravity);
   ec_sole_poses(robot, 1, gravity, memory, status);

@@ -223,7 +223,7 @@ static inline void ec_stand(const ec_robot* robot, ec_memory* memory, unsigned s
 
 /* Loads of all joints (JointLoads in robot/kinematics.hpp) in the posture of the last walk, from
    statics, and about the axes from the torques that are given. `torque` may be null, and its
-   entries NaN. */
+   entries EC_UNKNOWN. */
 static inline void ec_loads(const ec_robot* robot, const ec_joint* joints, unsigned support,
                             const double* torque, ec_memory* memory, double* gravity) {
   int k, i;
@@ -254,7 +254,7 @@ static inline void ec_loads(const ec_robot* robot, const ec_joint* joints, unsig
       ec_cross(moment, gravity, moment);
       ec_rotate_back(twisted->R, moment, load);
     }
-    if (torque && isfinite(torque[k])) load[2] = -torque[k];
+    if (torque && ec_is_sane(torque[k])) load[2] = -torque[k];
   }
 }
 
@@ -342,7 +342,7 @@ static inline void ec_settle(const ec_robot* robot, const double* q, unsigned su
   int i;
   for (i = 0; i < 2; ++i) {
     ec_loads(robot, robot->calibrated, support, torque, memory, gravity);
-    ec_shift_joints(robot, q, memory);
+    ec_shift_joints(robot, q, memory, status);
     ec_walk(robot, robot->calibrated, 1, memory, status);
   }
   ec_sole_poses(robot, 1, gravity, memory, status);

@@ -19,11 +19,11 @@ static inline double ec_bound(const ec_robot* robot, const ec_memory* memory, co
   *bit = side * (bound - most) > 0.0 ? EC_CORRECTION_CUT : EC_JOINT_LIMIT;
   if (*bit == EC_CORRECTION_CUT) bound = most;
   if (memory->is_bound) {
-    const double furthest = side < 0 ? memory->lowest[c] : memory->highest[c];
-    if (side * (bound - furthest) > 0.0) {
-      *bit = EC_CORRECTION_CUT;
-      return furthest;
-    }
+    /* How far a command may go from the last one comes before all else. */
+    const double low = memory->lowest[c], high = memory->highest[c];
+    if (bound < low || bound > high) *bit = EC_CORRECTION_CUT;
+    if (bound < low) bound = low;
+    if (bound > high) bound = high;
   }
   return bound;
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 #include <type_traits>
 
+#include "elastocal/runtime/number_text.hpp"
 #include "elastocal/runtime/runtime_model.hpp"
 
 namespace elastocal {
@@ -32,19 +34,16 @@ class Writer {
   template <typename Item>
   void operator()(const char* name, std::vector<Item>& items) {
     Begin(name);
-    out_ << ' ' << items.size() << '\n';
+    out_ << ' ' << std::to_string(items.size()) << '\n';
     for (Item& item : items) {
       Items(*this, item);
       out_ << '\n';
     }
   }
 
-  void Value(double& value) {
-    char text[40];
-    std::snprintf(text, sizeof text, " %.17g", value);
-    out_ << text;
-  }
-  void Value(int& value) { out_ << ' ' << value; }
+  // Numbers are texts before they come to the stream, whose locale may have decimal commas.
+  void Value(double& value) { out_ << ' ' << NumberText(value); }
+  void Value(int& value) { out_ << ' ' << std::to_string(value); }
   void Name(std::string& name) { out_ << ' ' << name; }
 
  private:
@@ -79,18 +78,14 @@ class Reader {
     constexpr bool kWhole = std::is_integral_v<Number>;
     std::string word;
     Value(word);
-    std::size_t used = 0;
-    try {
-      if constexpr (kWhole) {
-        value = std::stoi(word, &used);
-      } else {
-        value = std::stod(word, &used);
-      }
-    } catch (const std::exception&) {
-      used = 0;
+    const char* const end = word.data() + word.size();
+    const auto [stop, error] = std::from_chars(word.data(), end, value);
+    bool good = error == std::errc() && stop == end;
+    if constexpr (!kWhole) {
+      const bool may_be_infinite = name_ == "lower" || name_ == "upper";
+      good = good && (may_be_infinite ? !std::isnan(value) : std::isfinite(value));
     }
-    const bool is_number = used == word.size() && value == value;  // NaN is not itself
-    if (!is_number) Fail(word, kWhole ? "a whole number" : "a number");
+    if (!good) Fail("'" + word + "'", kWhole ? "a whole number" : "a number that is finite");
   }
   void Value(std::string& value) {
     value.clear();
@@ -110,6 +105,18 @@ class Reader {
   void Check(bool good, const char* name, const std::string& expected) {
     name_ = name;
     if (!good) Fail("something else", expected);
+  }
+  void CheckLimits(const std::string& coordinate, double lower, double upper) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    name_ = "upper";
+    if (lower > upper) {
+      Fail(NumberText(upper) + " for '" + coordinate + "'",
+           "at least " + NumberText(lower) + ", which is its entry of 'lower',");
+    }
+    if (lower == kInfinity || upper == -kInfinity) {
+      Fail("'" + coordinate + "' from " + NumberText(lower) + " to " + NumberText(upper),
+           "a range of positions");
+    }
   }
 
  private:
@@ -259,6 +266,9 @@ void CheckSizes(const RuntimeModel& model, Reader& reader) {
   }
   reader.Check(model.lower.size() == coordinates && model.upper.size() == coordinates, "lower",
                "an entry for each coordinate");
+  for (std::size_t c = 0; c < coordinates; ++c) {
+    reader.CheckLimits(model.coordinate_names[c], model.lower[c], model.upper[c]);
+  }
 }
 
 }  // namespace
