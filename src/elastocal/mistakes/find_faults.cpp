@@ -120,7 +120,8 @@ class FaultsInTurn {
  public:
   FaultsInTurn(const Project& project, std::optional<std::uint64_t> seed,
                const Measurements& as_recorded, const RecordedModel& robot,
-               const Recording& recording, const ModelComparison& comparison, bool springs_by_data)
+               const Recording& recording, const ModelComparison& comparison, bool springs_by_data,
+               const ChoiceByData& choose)
       : project_(project),
         seed_(seed),
         as_recorded_(as_recorded),
@@ -128,6 +129,7 @@ class FaultsInTurn {
         recording_(recording),
         comparison_(comparison),
         springs_by_data_(springs_by_data),
+        choose_(choose),
         gears_(FindImpossibleGears(comparison.largest())),
         of_slides_(ScaleOfSlides(gears_, comparison.largest(), project.calibration)),
         // With a correct scale, a robot whose lengths are all off has another size.
@@ -227,13 +229,12 @@ class FaultsInTurn {
       return fault.kind == FaultKind::kUnfinished || fault.kind == FaultKind::kJointLag;
     });
     if (!few_->complete || like_play) return false;
-    if (!(few_->left < kLeftBesideGears * found_->without_causes)) return false;
-    if (few_->left < kLeftBesideGears * left_) return true;
+    if (!ExplainPlainFit(few_->left, found_->without_causes)) return false;
     const ElasticityChoice& own = project_.elasticity;
     const bool bends =
         springs_by_data_ && own.bending && !own.bending->empty() && own.extra.empty();
-    if (bends && few_->left < left_) return true;
-    return ReplaceCauses(few_->faults, project_, seed_, as_recorded_, fit(), left_);
+    if (LeaveLess(few_->left, left_, bends)) return true;
+    return ReplaceCauses(few_->faults, project_, seed_, as_recorded_, fit(), left_, choose_);
   }
 
   void Explain(std::optional<FoundFault> found) {
@@ -332,6 +333,7 @@ class FaultsInTurn {
   const Recording& recording_;
   const ModelComparison& comparison_;
   bool springs_by_data_;
+  const ChoiceByData& choose_;
   std::vector<RecordingFault> gears_;
   std::string of_slides_;
   bool scale_is_known_;
@@ -352,8 +354,9 @@ bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
 std::vector<std::string> FindFaults(const Project& project, std::optional<std::uint64_t> seed,
                                     const Measurements& as_recorded, const RecordedModel& robot,
                                     const Recording& recording, const ModelComparison& comparison,
-                                    bool springs_by_data) {
-  return FaultsInTurn(project, seed, as_recorded, robot, recording, comparison, springs_by_data)
+                                    bool springs_by_data, const ChoiceByData& choose) {
+  return FaultsInTurn(project, seed, as_recorded, robot, recording, comparison, springs_by_data,
+                      choose)
       .Run();
 }
 
