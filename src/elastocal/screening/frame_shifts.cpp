@@ -14,6 +14,8 @@
 namespace elastocal {
 namespace {
 
+constexpr double kMoreNumbers = 2.0;  // of a direction
+
 using Blocks = std::vector<Eigen::VectorXd>;
 using Additions = std::vector<NormalEquations::Addition>;
 
@@ -51,7 +53,6 @@ void MeasureShifts(const NormalEquations& equations, const std::vector<Blocks>& 
                    const std::vector<int>& cluster, const Eigen::MatrixXd& factors,
                    const Eigen::MatrixXd& covariance, double variance,
                    std::vector<RecordingFault>& shifts) {
-  constexpr double kMoreNumbers = 2.0;
   const auto add = [&](const Blocks& derivative) {
     return equations.Add(derivative, cluster, factors, covariance);
   };
@@ -94,19 +95,23 @@ void PreferSlides(const RobotTree& tree, std::vector<RecordingFault>& faults) {
            JointOfCoordinate(tree, one.coordinate).type == JointType::kPrismatic;
   };
   const auto shifts = [](const RecordingFault& one) { return one.kind == FaultKind::kFrameShift; };
-  const auto explains_as_much = [](const RecordingFault& one, const RecordingFault& other) {
-    return one.posture == other.posture && one.end == other.end &&
-           one.share >= kAsMuch * other.share;
+  const auto together = [](const RecordingFault& one, const RecordingFault& other) {
+    return one.posture == other.posture && one.end == other.end;
+  };
+  // With what chance explains by the numbers of its direction.
+  const auto whole_share = [](const RecordingFault& shift) {
+    return shift.share * (1.0 + kMoreNumbers * std::pow(shift.sd / shift.size, 2));
   };
   for (RecordingFault& joint : faults) {
     const auto shift = std::ranges::find_if(all, [&](const RecordingFault& one) {
-      return slides(joint) && shifts(one) && explains_as_much(one, joint);
+      return slides(joint) && shifts(one) && together(one, joint) &&
+             whole_share(one) >= kAsMuch * joint.share;
     });
     if (shift != all.end()) joint.along = shift->along;
   }
   std::erase_if(faults, [&](const RecordingFault& shift) {
     return shifts(shift) && std::ranges::any_of(all, [&](const RecordingFault& one) {
-             return slides(one) && explains_as_much(one, shift);
+             return slides(one) && together(one, shift) && one.share >= kAsMuch * shift.share;
            });
   });
 }
