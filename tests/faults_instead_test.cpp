@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults of joints beside what data with a fault may show instead: springs, causes, and a scale of
-// the cameras.
+// Faults of joints beside the springs and causes that data with a fault may show instead.
 #include <gtest/gtest.h>
 
 #include "elastocal/elastocal.hpp"
-#include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/fault_or_causes.hpp"
-#include "elastocal/mistakes/impossible_gears.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
-#include "elastocal/screening/camera_scale.hpp"
 #include "elastocal/screening/doubtful_gains.hpp"
 #include "tests/faulty_arm.hpp"
 
@@ -55,33 +51,6 @@ TEST_F(FaultsInstead, ADoubtfulGainIsOneThatNoGoodRobotHas) {
     ExpectIn(DescribeDoubtfulGain(found.front(), project_.tree),
              "elbow_joint: its positions may be 1.0");
   }
-}
-
-/// What is said of a gain of the rail that the scale of the lengths in `fit` would explain.
-std::string SaidOfRail(const CalibrationResult& fit, int rail, const CalibrationOptions& options) {
-  const auto scale = EstimateCommonScale(fit, options);
-  if (!scale) return "no scale";
-  RecordingFault gain{.coordinate = rail, .size = 1.0 / (1.0 + scale->size) - 1.0, .sd = 1e-4};
-  return ScaleOfSlides({gain}, fit, options);
-}
-
-// The other lengths say the same of the cameras only if they say it together.
-TEST_F(FaultsInstead, AGainOfASlideIsNoScaleOfTheCamerasWhereOneLengthMakesTheScale) {
-  const int rail = CoordinateOf("rail_joint");
-  const auto fit = [&](const Recording& recording) {
-    return Calibrate(model_, recording, base_, kKind, project_.calibration);
-  };
-  Recording larger = recorded_;
-  larger.markers *= 1.05;
-  const CalibrationResult of_all = fit(larger);
-  ASSERT_FALSE(EstimateCommonScale(of_all, project_.calibration)->of_one_length);
-  ExpectIn(SaidOfRail(of_all, rail, project_.calibration), "the cameras' positions seem 1.0");
-  RobotTree tree = project_.tree;
-  tree.joints[Size(FindJoint(tree, "elbow_joint"))].T_parent_child.translation() *= 1.3;
-  const ErrorModel longer = MakeErrorModel(tree, project_.markers, project_.placement);
-  const CalibrationResult of_one = fit(Record(longer, base_.kept, 1));
-  ASSERT_TRUE(EstimateCommonScale(of_one, project_.calibration)->of_one_length);
-  EXPECT_EQ(SaidOfRail(of_one, rail, project_.calibration), "");
 }
 
 }  // namespace
