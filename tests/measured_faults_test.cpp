@@ -161,7 +161,21 @@ TEST_F(MeasuredTiago, APushedTrackerIsNamed) {
       for (std::size_t m = 0; m < 4; ++m) table.rows[i][3 * m] += 0.01;
     }
   });
-  EXPECT_TRUE(Says(FirstFault(run), "mm elsewhere along x from")) << FirstFault(run);
+  EXPECT_TRUE(Says(FirstFault(run), "the frame of the markers lies 1")) << FirstFault(run);
+  EXPECT_TRUE(Says(FirstFault(run), "pushed")) << FirstFault(run);
+}
+
+// Axis by axis it would not show: without one half of the push, the other half is left.
+TEST_F(MeasuredTiago, ATrackerThatWasPushedAlongTwoAxesIsNamed) {
+  const CalibrationRun run = Run([](NumberTable& table) {
+    for (std::size_t i = 18; i < table.rows.size(); ++i) {
+      for (std::size_t m = 0; m < 4; ++m) {
+        table.rows[i][3 * m] += 0.015;
+        table.rows[i][3 * m + 1] -= 0.015;
+      }
+    }
+  });
+  EXPECT_TRUE(Says(FirstFault(run), "the frame of the markers lies 2")) << FirstFault(run);
   EXPECT_TRUE(Says(FirstFault(run), "pushed")) << FirstFault(run);
 }
 

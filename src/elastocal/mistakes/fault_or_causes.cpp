@@ -19,12 +19,30 @@
 namespace elastocal {
 namespace {
 
+constexpr double kClearlyLess = 0.8;  // ratio of errors of fits
+
 std::vector<std::string> AllJoints() { return {"*"}; }
 
 /// In a table, distances within a cluster tell a marker that was glued on again, whatever else is
 /// wrong. In trials, a fault of a joint looks like knocks.
 KnockSearch PlainKnocks(const Recording& recording) {
   return recording.trials.empty() ? KnockSearch::kAll : KnockSearch::kNone;
+}
+
+/// Whether a cause is a function of the joints' positions alone, as a gain is. The direction of the
+/// last motion and loads are none, and a robot with a wrong gain still has them.
+bool IsOfPositions(CorrectionShape shape) {
+  switch (shape) {
+    case CorrectionShape::kSin:
+    case CorrectionShape::kCos:
+    case CorrectionShape::kSinTwice:
+    case CorrectionShape::kCosTwice:
+    case CorrectionShape::kGear:
+    case CorrectionShape::kCoupling:
+      return true;
+    default:
+      return false;
+  }
 }
 
 /// Whether any of these causes is estimated five times as large as a robot's typically are.
@@ -38,6 +56,40 @@ bool AreOfNoRobot(const std::set<std::string>& causes, const CalibrationResult& 
     if (large && causes.contains(of.cause)) return true;
   }
   return false;
+}
+
+/// Causes of a joint that may look like this fault of it.
+std::set<std::string> CausesLike(const RecordingFault& fault, const ErrorModel& model) {
+  const std::string& joint = JointOfCoordinate(model.tree, fault.coordinate).name;
+  std::set<std::string> causes;
+  for (const Correction& correction : model.elasticity.corrections) {
+    const std::string& cause = correction.cause;
+    const bool of = cause.starts_with(joint + ".") || cause.ends_with(".coupling_" + joint);
+    const bool alike = fault.kind != FaultKind::kJointGain || IsOfPositions(correction.shape);
+    if (of && alike) causes.insert(cause);
+  }
+  return causes;
+}
+
+/// Whether the robot of a project leaves at most a tenth more than `left` of a recording from which
+/// the faults are removed, without causes that no robot has in their place.
+bool LeavesNoMore(const Project& project, std::optional<std::uint64_t> seed, Measurements undone,
+                  const std::vector<RecordingFault>& faults, double left) {
+  constexpr double kAsWellAsCauses = 1.1;
+  try {
+    const RecordedModel robot =
+        MakeRecordedModel(project, seed, undone, PlainKnocks(undone.calibration));
+    const CalibrationResult fit = Calibrate(robot.model, undone.calibration, robot.base,
+                                            ModelKinds(robot.model).back(), project.calibration);
+    if (MarkerError(fit, undone.calibration, project.calibration) > kAsWellAsCauses * left) {
+      return false;
+    }
+    return std::ranges::none_of(faults, [&](const RecordingFault& fault) {
+      return AreOfNoRobot(CausesLike(fault, fit.model), fit);
+    });
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 /// Faults that are certain or, without any, the suspected one that explains most, if a fit to the
@@ -143,35 +195,31 @@ std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::
   }
 }
 
+bool ExplainPlainFit(double few, double plain) { return few < kClearlyLess * plain; }
+
+bool LeaveLess(double few, double chosen, bool bends) {
+  return few < kClearlyLess * chosen || (bends && few < chosen);
+}
+
 bool ReplaceCauses(const std::vector<RecordingFault>& faults, Project project,
                    std::optional<std::uint64_t> seed, const Measurements& as_recorded,
-                   const CalibrationResult& with, double left) {
-  constexpr double kAsWellAsCauses = 1.1;
+                   const CalibrationResult& with, double left, const ChoiceByData& choose) {
   Measurements undone = as_recorded;
   std::set<std::string> removed;
   for (const RecordingFault& fault : faults) {
     const bool of_joint =
         fault.kind == FaultKind::kJointGain || fault.kind == FaultKind::kJointOffset;
     if (!of_joint || fault.coordinate < 0 || fault.linkage >= 0) return false;
-    const std::string& joint = JointOfCoordinate(project.tree, fault.coordinate).name;
-    for (const std::string& cause : project.elasticity.extra) {
-      const bool of = cause.starts_with(joint + ".") || cause.ends_with(".coupling_" + joint);
-      if (of) removed.insert(cause);
-    }
+    removed.merge(CausesLike(fault, with.model));
     undone.calibration = WithoutFault(undone.calibration, fault);
   }
   if (!AreOfNoRobot(removed, with)) return false;
   std::erase_if(project.elasticity.extra,
                 [&](const std::string& cause) { return removed.contains(cause); });
-  try {
-    const RecordedModel robot =
-        MakeRecordedModel(project, seed, undone, PlainKnocks(undone.calibration));
-    const CalibrationResult fit = Calibrate(robot.model, undone.calibration, robot.base,
-                                            ModelKinds(robot.model).back(), project.calibration);
-    return MarkerError(fit, undone.calibration, project.calibration) < kAsWellAsCauses * left;
-  } catch (const InputError&) {
-    return false;
-  }
+  if (LeavesNoMore(project, seed, undone, faults, left)) return true;
+  if (!choose) return false;
+  project.elasticity = choose(undone);
+  return LeavesNoMore(project, seed, undone, faults, left);
 }
 
 }  // namespace elastocal

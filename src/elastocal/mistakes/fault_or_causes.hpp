@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -38,13 +39,26 @@ bool MayHideFault(const Project& project, bool springs_by_data);
 std::optional<FoundFault> FindWithoutCauses(Project project, std::optional<std::uint64_t> seed,
                                             const Measurements& as_recorded, bool springs_by_data);
 
+/// Whether faults, and not the springs beside them, explain what a plain fit leaves. `few`: its
+/// error with the faults undone, `plain`: with them (FoundFault::without_causes), m.
+bool ExplainPlainFit(double few, double plain);
+
+/// Whether few faults leave less than what the data chose: far less or, where the data chose that
+/// joints bend and no causes, less with fewer parameters. `few`: error of the plain fit with the
+/// faults undone, `chosen`: of the fit with what was chosen, m.
+bool LeaveLess(double few, double chosen, bool bends);
+
+/// Lets the data of a table choose springs and causes.
+using ChoiceByData = std::function<ElasticityChoice(const Measurements&)>;
+
 /// Whether faults of joints explain a recording as well as the causes that these joints have in the
-/// fit `with`: an eccentricity and an ellipticity together look like a gain. Causes of this size
-/// (five times the typical one) are in no robot. With the faults undone and without these causes, a
-/// fit leaves at most a tenth more than `left`, the error of `with`, m.
+/// fit `with`: an eccentricity and an ellipticity together look like a gain (of which play and
+/// stiffening are no part). Causes of this size (five times the typical one) are in no robot. With
+/// the faults undone, a fit without these causes, or one with what the data choose then (`choose`;
+/// may be empty), leaves at most a tenth more than `left`, the error of `with`, m.
 bool ReplaceCauses(const std::vector<RecordingFault>& faults, Project project,
                    std::optional<std::uint64_t> seed, const Measurements& as_recorded,
-                   const CalibrationResult& with, double left);
+                   const CalibrationResult& with, double left, const ChoiceByData& choose);
 
 /// Whether the faults are gains, in all trials, of the joints of these gears and of no others.
 bool AreGainsOf(const std::vector<RecordingFault>& faults,

@@ -120,7 +120,8 @@ class FaultsInTurn {
  public:
   FaultsInTurn(const Project& project, std::optional<std::uint64_t> seed,
                const Measurements& as_recorded, const RecordedModel& robot,
-               const Recording& recording, const ModelComparison& comparison, bool springs_by_data)
+               const Recording& recording, const ModelComparison& comparison, bool springs_by_data,
+               const ChoiceByData& choose)
       : project_(project),
         seed_(seed),
         as_recorded_(as_recorded),
@@ -128,8 +129,9 @@ class FaultsInTurn {
         recording_(recording),
         comparison_(comparison),
         springs_by_data_(springs_by_data),
+        choose_(choose),
         gears_(FindImpossibleGears(comparison.largest())),
-        of_slides_(ScaleOfSlides(gears_, comparison.largest(), project.calibration)),
+        of_slides_(OfSlides(gears_)),
         // With a correct scale, a robot whose lengths are all off has another size.
         scale_is_known_(ScaleIsKnown(as_recorded.trials)) {}
 
@@ -164,6 +166,10 @@ class FaultsInTurn {
   }
 
   const CalibrationResult& fit() const { return comparison_.largest(); }
+
+  std::string OfSlides(const std::vector<RecordingFault>& faults) const {
+    return ScaleOfSlides(faults, project_.tree, EstimateCommonScale(fit(), project_.calibration));
+  }
 
   std::optional<FoundFault> General() const {
     return FindGeneralFault(project_, seed_, as_recorded_, robot_, recording_, fit());
@@ -220,20 +226,19 @@ class FaultsInTurn {
   }
 
   /// Whether few faults explain the recording instead of what the data have chosen: far better, or
-  /// better than bending joints with fewer parameters, or as well as causes of no robot. The faults
-  /// have to explain it, not the springs beside them.
+  /// better than bending joints with fewer parameters, or as well as causes of no robot. Where the
+  /// plain fit is compared, the faults have to explain it, not the springs beside them.
   bool IsFaultInstead() const {
     const bool like_play = std::ranges::any_of(few_->faults, [](const RecordingFault& fault) {
       return fault.kind == FaultKind::kUnfinished || fault.kind == FaultKind::kJointLag;
     });
     if (!few_->complete || like_play) return false;
-    if (!(few_->left < kLeftBesideGears * found_->without_causes)) return false;
-    if (few_->left < kLeftBesideGears * left_) return true;
     const ElasticityChoice& own = project_.elasticity;
     const bool bends =
         springs_by_data_ && own.bending && !own.bending->empty() && own.extra.empty();
-    if (bends && few_->left < left_) return true;
-    return ReplaceCauses(few_->faults, project_, seed_, as_recorded_, fit(), left_);
+    const bool explain = ExplainPlainFit(few_->left, found_->without_causes);
+    if (explain && LeaveLess(few_->left, left_, bends)) return true;
+    return ReplaceCauses(few_->faults, project_, seed_, as_recorded_, fit(), left_, choose_);
   }
 
   void Explain(std::optional<FoundFault> found) {
@@ -302,8 +307,7 @@ class FaultsInTurn {
   }
 
   std::vector<std::string> OfGeneralFault() const {
-    const std::string of_slide =
-        scale_is_known_ ? "" : ScaleOfSlides({found_->fault}, fit(), project_.calibration);
+    const std::string of_slide = scale_is_known_ ? "" : OfSlides({found_->fault});
     if (!of_slide.empty()) return {OfScale(of_slide)};
     if (!few_->complete) {
       const auto odd = OddBesideCalibrated(project_, robot_, recording_, fit(), left_);
@@ -332,6 +336,7 @@ class FaultsInTurn {
   const Recording& recording_;
   const ModelComparison& comparison_;
   bool springs_by_data_;
+  const ChoiceByData& choose_;
   std::vector<RecordingFault> gears_;
   std::string of_slides_;
   bool scale_is_known_;
@@ -352,8 +357,9 @@ bool ScaleIsKnown(const std::vector<TrialSummary>& trials) {
 std::vector<std::string> FindFaults(const Project& project, std::optional<std::uint64_t> seed,
                                     const Measurements& as_recorded, const RecordedModel& robot,
                                     const Recording& recording, const ModelComparison& comparison,
-                                    bool springs_by_data) {
-  return FaultsInTurn(project, seed, as_recorded, robot, recording, comparison, springs_by_data)
+                                    bool springs_by_data, const ChoiceByData& choose) {
+  return FaultsInTurn(project, seed, as_recorded, robot, recording, comparison, springs_by_data,
+                      choose)
       .Run();
 }
 

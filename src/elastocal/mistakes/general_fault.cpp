@@ -66,10 +66,8 @@ class FaultExplanation {
 
   std::string Describe() const {
     const bool single = faults_.size() == 1 && complete_;
-    const bool push = IsOnePush();
-    const std::string cluster = MovedCluster(single || push ? kClearlyBetter : kAsWell);
+    const std::string cluster = MovedCluster(single ? kClearlyBetter : kAsWell);
     if (!cluster.empty()) return cluster;
-    if (push) return DescribeShifts(faults_, general_.recording);
     if (single) return Remedy(faults_.front()) + (refuted_ ? kOrInAllOthers : "");
     const std::string together = SeveralJoints();
     if (!together.empty()) return together;
@@ -92,15 +90,6 @@ class FaultExplanation {
  private:
   std::string Remedy(const RecordingFault& fault) const {
     return FaultAndRemedy(fault, project_.tree, general_.recording);
-  }
-
-  /// Whether the faults are displacements of the frame along different axes, in the same postures.
-  bool IsOnePush() const {
-    const RecordingFault& first = faults_.front();
-    return complete_ && std::ranges::all_of(faults_, [&](const RecordingFault& one) {
-             return one.kind == FaultKind::kFrameShift && one.end == first.end &&
-                    std::abs(one.posture - first.posture) <= kSamePlace;
-           });
   }
 
   struct SplitRecording {
@@ -136,7 +125,11 @@ class FaultExplanation {
   void Add(const RecordingFault& found) {
     for (RecordingFault& one : faults_) {
       if (!IsSame(one, found)) continue;
-      one.size = Sum(one, found.size);
+      if (one.kind == FaultKind::kFrameShift) {
+        AddShift(found, one);
+      } else {
+        one.size = Sum(one, found.size);
+      }
       one.sd = found.sd;
       return;
     }

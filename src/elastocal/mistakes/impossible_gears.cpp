@@ -8,14 +8,12 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/robot/coordinates.hpp"
-#include "elastocal/screening/camera_scale.hpp"
 
 namespace elastocal {
 
-std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
-                          const CalibrationResult& result, const CalibrationOptions& options) {
+std::string ScaleOfSlides(const std::vector<RecordingFault>& faults, const RobotTree& tree,
+                          const std::optional<CommonScale>& scale) {
   constexpr double kAlike = 1e-3, kPlain = 2.0, kConsistent = 3.0;
-  const RobotTree& tree = result.model.tree;
   double least = 1.0, most = -1.0, sd = 0.0;
   std::string joints;
   for (const RecordingFault& fault : faults) {
@@ -38,7 +36,6 @@ std::string ScaleOfSlides(const std::vector<RecordingFault>& faults,
         "the same factor ({})",
         1.0 + size, sd, joints, accept);
   }
-  const auto scale = EstimateCommonScale(result, options);
   if (!scale || scale->of_one_length || std::abs(scale->size - size) > kConsistent * scale->sd ||
       std::abs(scale->size) < kPlain * scale->sd) {
     return "";

@@ -27,13 +27,11 @@
 #include "elastocal/pipeline/ends_of_limbs.hpp"
 #include "elastocal/pipeline/known_places.hpp"
 #include "elastocal/pipeline/known_soles.hpp"
+#include "elastocal/pipeline/recording_warnings.hpp"
 #include "elastocal/pipeline/still_joints.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/recorded/repeated_trials.hpp"
 #include "elastocal/robot/kinematics.hpp"
-#include "elastocal/screening/coarse_positions.hpp"
-#include "elastocal/screening/loose_clusters.hpp"
-#include "elastocal/screening/turned_clusters.hpp"
 
 namespace elastocal {
 namespace {
@@ -100,13 +98,6 @@ Progress OfStep(const StepProgress& progress, const std::string& step) {
   return [progress, step](int done, int total) { progress(step, done, total); };
 }
 
-/// Ten folds for a posture table that is not very large; one each for few postures.
-int UsualFolds(const Recording& recording) {
-  if (!recording.trials.empty() || recording.posture_count() > 2000) return 0;
-  const int folds = FoldsFor(recording, 10);
-  return folds < 2 ? 0 : folds;
-}
-
 void Append(const std::vector<std::string>& more, std::vector<std::string>& warnings) {
   warnings.insert(warnings.end(), more.begin(), more.end());
 }
@@ -166,30 +157,23 @@ void ChooseWhatIsEstimated(Work& work) {
   run.extra = project.elasticity.extra;
 }
 
-/// Warns of positions that are coarse or scattered, and of a scale that no length tells.
+/// The springs and causes that other data than the recorded ones would choose.
+ElasticityChoice ChoiceFor(const Measurements& measured, const Work& work) {
+  Project project = work.given;
+  const ExperimentOptions& options = work.options;
+  ChooseModel(measured, options.seed, kElasticityFolds, options.threads, project,
+              AskForSprings::kNo);
+  return project.elasticity;
+}
+
+/// Warns of what is too uncertain for an objection, or too small.
 void WarnOfWhatWasRecorded(Work& work) {
   CalibrationRun& run = work.run;
-  const CalibrationResult& fit = run.comparison.largest();
-  run.common_scale = EstimateCommonScale(fit, work.settings());
+  run.common_scale = EstimateCommonScale(run.comparison.largest(), work.settings());
   if (!run.faults.empty()) return;  // they are worse
-  const std::vector<LabelCluster> clusters = SeenClusters(work.project, work.recording());
-  for (const TurnedCluster& one : FindTurnedClusters(fit, clusters)) {
-    run.warnings.push_back(Describe(one));
-  }
-  const std::vector<TrialSummary>& trials = work.as_recorded.trials;
-  for (const CoarsePositions& one :
-       FindCoarsePositions(fit, work.recording(), work.settings(), trials)) {
-    run.warnings.push_back(Describe(one, work.project.tree));
-  }
-  if (const auto loose = FindScatteredPositions(fit, work.recording(), work.settings())) {
-    run.warnings.push_back(Describe(*loose, work.project.tree));
-  } else if (const auto cluster =
-                 FindLooseCluster(fit, work.recording(), clusters, work.settings())) {
-    run.warnings.push_back(Describe(*cluster));
-  }
-  if (run.common_scale && IsDoubtful(*run.common_scale) && !ScaleIsKnown(trials)) {
-    run.warnings.push_back(DescribeDoubt(*run.common_scale));
-  }
+  Append(RecordingWarnings(work.project, run.comparison.largest(), work.recording(),
+                           work.as_recorded.trials, run.common_scale),
+         run.warnings);
 }
 
 /// Computes errors on held-out postures. Each fold chooses anew what the data chose.
@@ -367,7 +351,8 @@ CalibrationRun CalibrateExperiment(const Project& given,
   // Not in the paper: finds mistakes of the recording from the residuals.
   if (work.sound) {
     run.faults = FindFaults(work.project, options.seed, work.as_recorded, work.robot,
-                            work.recording(), run.comparison, !run.elasticity.empty());
+                            work.recording(), run.comparison, !run.elasticity.empty(),
+                            [&](const auto& measured) { return ChoiceFor(measured, work); });
   }
   WarnOfWhatWasRecorded(work);
 

@@ -25,9 +25,10 @@ enum class AskForSprings { kYes, kNo };
 
 /// Chooses elastic joints, then causes beyond geometry and springs, where the project leaves them
 /// open, and sets both in the project. A large cause hides springs, and a missing spring looks like
-/// further causes. Where causes were found, elastic joints are therefore chosen again with them
-/// and, if that changes the choice, causes again with the springs.
-ModelChoice ChooseModel(const Measurements& measured, std::optional<std::uint64_t> seed, int folds,
+/// further causes. A marker of a table that was glued on again counts where it was for longer.
+/// Where causes were found, elastic joints are therefore chosen again with them and, if that
+/// changes the choice, causes again with the springs.
+ModelChoice ChooseModel(const Measurements& given, std::optional<std::uint64_t> seed, int folds,
                         int threads, Project& project, AskForSprings ask = AskForSprings::kYes);
 
 }  // namespace elastocal

@@ -84,6 +84,12 @@ CrossValidation CrossValidateExperiment(const ExperimentData& data, const Record
   return validation;
 }
 
+int UsualFolds(const Recording& recording) {
+  if (!recording.trials.empty() || recording.posture_count() > 2000) return 0;
+  const int folds = FoldsFor(recording, 10);
+  return folds < 2 ? 0 : folds;
+}
+
 std::vector<std::string> DecidedOnce(const ExperimentData& data, int folds) {
   const int postures = data.as_recorded.posture_count();
   const int smallest_training = postures - (postures + folds - 1) / folds;

@@ -199,11 +199,16 @@ std::vector<MarkerPair> AllPairs(const std::vector<LabelCluster>& clusters) {
 std::vector<LabelSuspicion> FindExchangedMarkers(const ErrorModel& model,
                                                  const Recording& recording,
                                                  const std::vector<LabelCluster>& clusters) {
+  const auto body_of = [&](int m) {
+    return model.tree.links[Size(model.markers[Size(m)].link)].body;
+  };
   ExchangeSearch search(model, recording, clusters);
   std::vector<LabelSuspicion> suspicions;
   for (const MarkerPair& pair : AllPairs(clusters)) {
     const Sightings of = search.Of(pair);
-    if (of.wrong == 0 || of.wrong == of.telling) continue;
+    // On one body it does no harm, because the places of markers are estimated.
+    const bool everywhere = of.wrong == of.telling;
+    if (of.wrong == 0 || (everywhere && body_of(pair.a) == body_of(pair.b))) continue;
     suspicions.push_back({.trials = of.trials,
                           .postures = of.exchanged,
                           .a = recording.marker_names[Size(pair.a)],

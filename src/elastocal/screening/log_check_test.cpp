@@ -243,6 +243,18 @@ TEST_F(LogCheckTest, ExchangedLabelsAreTold) {
   EXPECT_TRUE(WithoutExchange(changed, found[0]).markers == recording_.markers);
 }
 
+// No position on its own link explains a marker of another one.
+TEST_F(LogCheckTest, MarkersOfTwoLinksExchangedInAllTrialsAreTold) {
+  const auto clusters = Clusters();
+  Recording changed = recording_;
+  changed.markers.middleCols<3>(3 * clusters[2].markers[0])
+      .swap(changed.markers.middleCols<3>(3 * clusters[3].markers[0]));
+  const auto found = FindLabelSuspicions(robot_.model, changed, clusters);
+  ASSERT_FALSE(found.empty());
+  EXPECT_TRUE(WithoutExchange(changed, found[0]).markers == recording_.markers)
+      << DescribeSuspicion(found[0], changed);
+}
+
 TEST_F(LogCheckTest, MarkersExchangedInAPartOfATrialAreToldByTheRobotWhereDistancesAreAlike) {
   const auto clusters = Clusters();
   const std::vector<int>& trunk = clusters[1].markers;

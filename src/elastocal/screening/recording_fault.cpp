@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <limits>
 
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/describe_posture.hpp"
+#include "elastocal/robot/linkage.hpp"
 #include "elastocal/robot/move_motors.hpp"
 #include "elastocal/screening/frame_shifts.hpp"
 
@@ -30,6 +32,23 @@ double VelocityOf(int coordinate, const Recording& recording, int posture) {
   const double time = recording.time_s[after] - recording.time_s[before];
   if (!(time > 0.0)) return 0.0;
   return (recording.q(after, coordinate) - recording.q(before, coordinate)) / time;
+}
+
+/// The recording with joints that follow a motor of rods by `step`.
+Recording WithMotorMoved(const RecordingFault& fault, const RobotTree& tree, double step,
+                         const Recording& recording) {
+  const Linkage& linkage = tree.linkages[Size(fault.linkage)];
+  Recording changed = recording;
+  const std::vector<int> joints = CoordinatesOf(tree, linkage);
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    const Eigen::VectorXd at = recording.q(i, joints).transpose();
+    const auto motors = MotorPositions(tree, linkage, at);
+    if (!motors) continue;
+    if (const auto closure = CloseLinkage(tree, linkage, *motors, {}, at)) {
+      changed.q(i, joints) += step * closure->by_motors.col(fault.coordinate).transpose();
+    }
+  }
+  return changed;
 }
 
 /// Whether a posture is held and was reached from the one before it.
@@ -128,7 +147,7 @@ Eigen::MatrixXd CameraDisplacements(const RecordingFault& fault, const Recording
   Eigen::MatrixXd displacements = Eigen::MatrixXd::Zero(markers.rows(), markers.cols());
   if (fault.kind == FaultKind::kFrameShift) {
     for (int m = 0; m < recording.marker_count(); ++m) {
-      displacements.col(3 * m + fault.axis).setOnes();
+      displacements.middleCols(3 * m, 3).rowwise() = fault.along.transpose();
     }
     return displacements;
   }
@@ -163,6 +182,20 @@ Eigen::MatrixXd CameraDisplacements(const RecordingFault& fault, const Recording
   return displacements;
 }
 
+Recording WithStep(const RecordingFault& fault, const RobotTree& tree, double step,
+                   const Recording& recording) {
+  if (fault.linkage >= 0) return WithMotorMoved(fault, tree, step, recording);
+  Recording changed = recording;
+  if (fault.coordinate >= 0) {
+    changed.q.col(fault.coordinate).array() += step;
+  } else if (fault.kind == FaultKind::kUnfinished) {
+    changed.q += step * MovesOf(recording);
+  } else {
+    changed.markers += step * CameraDisplacements(fault, recording);
+  }
+  return changed;
+}
+
 Recording WithoutFault(const Recording& recording, const RecordingFault& fault) {
   Recording without = recording;
   if (fault.kind == FaultKind::kUnfinished && fault.coordinate < 0) {
@@ -179,7 +212,7 @@ Recording WithoutFault(const Recording& recording, const RecordingFault& fault) 
     const double factor = FactorOf(fault, recording, i);
     if (fault.kind == FaultKind::kFrameShift) {
       for (int m = 0; m < recording.marker_count(); ++m) {
-        without.markers(i, 3 * m + fault.axis) -= fault.size * factor;
+        without.markers.block<1, 3>(i, 3 * m) -= fault.size * factor * fault.along.transpose();
       }
     } else if (fault.kind == FaultKind::kCameraScale) {
       without.markers.row(i) /= 1.0 + fault.size * factor;
@@ -236,7 +269,7 @@ std::string DescribeFault(const RecordingFault& fault, const RobotTree& tree,
     }
     return sentence;
   }
-  if (fault.kind == FaultKind::kFrameShift) return DescribeShifts({fault}, recording);
+  if (fault.kind == FaultKind::kFrameShift) return DescribeShift(fault, recording);
   const bool joint = fault.kind != FaultKind::kCameraScale;
   const LoggedPosition of = joint ? LoggedPositionOf(tree, fault.linkage, fault.coordinate)
                                   : LoggedPosition{"camera positions"};

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "elastocal/measurement/recording.hpp"
 #include "elastocal/robot/robot_tree.hpp"
 
@@ -23,7 +25,7 @@ enum class FaultKind {
   /// Coordinates along one axis are off by a multiple of those along another, in all postures.
   kCameraShear,
   kCameraBend,  ///< scale of the cameras changes with the square of the distance from the middle
-  /// The frame of a table's markers is displaced along one of its axes from some posture on.
+  /// The frame of a table's markers is displaced from some posture on.
   kFrameShift,
 };
 
@@ -44,6 +46,9 @@ struct RecordingFault {
   int end = 0;
   int axis = -1;     ///< axis of the cameras' frame: 0, 1 or 2
   int by_axis = -1;  ///< of a shear: axis whose coordinate displaces those along `axis`
+  /// Direction of a displacement of the frame, a unit vector in its axes. Of an offset of a sliding
+  /// joint: that of a displacement which explains as much (PreferSlides).
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();
 };
 
 /// Factor of a fault's size in a posture: of a gain, the position.
@@ -83,6 +88,11 @@ bool IsInCameraSpace(const RecordingFault& fault);
 /// Displacements of the markers by a fault of the cameras for one unit of its size, m: as
 /// Recording::markers.
 Eigen::MatrixXd CameraDisplacements(const RecordingFault& fault, const Recording& recording);
+
+/// The recording with a fault added of size `step`, without its factors of the postures; of a motor
+/// of rods, joints follow it.
+Recording WithStep(const RecordingFault& fault, const RobotTree& tree, double step,
+                   const Recording& recording);
 
 /// The recording with the fault corrected. Not for motors of rods.
 Recording WithoutFault(const Recording& recording, const RecordingFault& fault);

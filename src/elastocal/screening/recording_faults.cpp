@@ -9,6 +9,7 @@
 
 #include "elastocal/calibration/fit.hpp"
 #include "elastocal/calibration/variances.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/measurement/moments.hpp"
 #include "elastocal/robot/coordinates.hpp"
 #include "elastocal/robot/linkage.hpp"
@@ -159,15 +160,20 @@ class FaultSearch {
     for (std::size_t k = 0; k < trials.size(); ++k) {
       factors.col(static_cast<Eigen::Index>(k)) = trials[k].factor;
     }
-    const auto additions = equations.Add(derivative, posture_, factors, covariance);
     std::vector<RecordingFault> measured;
+    for (const Trial& trial : trials) measured.push_back(trial.fault);
+    const double variance = std::max(1.0, result_.posterior.cluster_factor);
+    if (!trials.empty() && IsOfAnyDirection(trials.front().fault)) {
+      MeasureShifts(equations, by_axis_, posture_, factors, covariance, variance, measured);
+      for (RecordingFault& fault : measured) fault.share /= squares_;
+      return measured;
+    }
+    const auto additions = equations.Add(derivative, posture_, factors, covariance);
     for (std::size_t k = 0; k < trials.size(); ++k) {
-      RecordingFault fault = trials[k].fault;
       // What has to be added to the recording is minus the fault.
-      fault.size = -additions[k].value;
-      fault.sd = std::sqrt(additions[k].variance * std::max(1.0, result_.posterior.cluster_factor));
-      fault.share = additions[k].gain / squares_;
-      measured.push_back(fault);
+      measured[k].size = -additions[k].value;
+      measured[k].sd = std::sqrt(additions[k].variance * variance);
+      measured[k].share = additions[k].gain / squares_;
     }
     return measured;
   }
@@ -190,15 +196,7 @@ class FaultSearch {
 
   /// By what a fault does to the recording, but for its factors.
   Blocks DerivativeOf(const RecordingFault& fault) const {
-    Recording changed = recording_;
-    if (fault.coordinate >= 0) {
-      changed.q.col(fault.coordinate).array() += kStep;
-    } else if (fault.kind == FaultKind::kUnfinished) {
-      changed.q += kStep * MovesOf(recording_);
-    } else {
-      changed.markers += kStep * CameraDisplacements(fault, recording_);
-    }
-    return Derivative(changed);
+    return Derivative(WithStep(fault, result_.model.tree, kStep, recording_));
   }
 
   /// One derivative serves faults of the same joint that follow each other.
@@ -235,21 +233,11 @@ class FaultSearch {
   void TryMotor(const NormalEquations& equations, const Eigen::MatrixXd& covariance,
                 const MotorIndex& motor) {
     const RobotTree& tree = result_.model.tree;
-    const Linkage& linkage = tree.linkages[static_cast<std::size_t>(motor.linkage)];
-    Recording changed = recording_;
-    const std::vector<int> joints = CoordinatesOf(tree, linkage);
-    for (int i = 0; i < recording_.posture_count(); ++i) {
-      const Eigen::VectorXd at = recording_.q(i, joints).transpose();
-      const auto motors = MotorPositions(tree, linkage, at);
-      if (!motors) continue;
-      if (const auto closure = CloseLinkage(tree, linkage, *motors, {}, at)) {
-        changed.q(i, joints) += kStep * closure->by_motors.col(motor.rod).transpose();
-      }
-    }
+    const Linkage& linkage = tree.linkages[Size(motor.linkage)];
     const RecordingFault fault{
         .kind = FaultKind::kJointOffset, .coordinate = motor.rod, .linkage = motor.linkage};
-    TryOffsets(equations, covariance, Derivative(changed), fault,
-               linkage.rods[static_cast<std::size_t>(motor.rod)].actuator);
+    const bool slides = linkage.rods[Size(motor.rod)].actuator;
+    TryOffsets(equations, covariance, DerivativeOf(fault), fault, slides);
   }
 
   /// Tries offsets of a joint, a motor or the markers' frame, by the derivative of its position.
@@ -349,11 +337,17 @@ class FaultSearch {
 
   /// Tries faults of the cameras' space, and the scale of one trial (not of all: see the header).
   void TryScale(const NormalEquations& equations, const Eigen::MatrixXd& covariance) {
-    const bool held_table = recording_.trials.empty() && !recording_.free_root;
+    if (recording_.trials.empty() && !recording_.free_root) {
+      RecordingFault shift{.kind = FaultKind::kFrameShift};
+      for (int axis = 0; axis < 3; ++axis) {
+        shift.along = Eigen::Vector3d::Unit(axis);
+        by_axis_.push_back(DerivativeOf(shift));
+      }
+      shift.along.setZero();
+      TryOffsets(equations, covariance, by_axis_.front(), shift, true);
+    }
     std::vector<RecordingFault> of_cameras = {{.kind = FaultKind::kCameraBend}};
     for (int axis = 0; axis < 3; ++axis) {
-      const RecordingFault shift{.kind = FaultKind::kFrameShift, .axis = axis};
-      if (held_table) TryOffsets(equations, covariance, DerivativeOf(shift), shift, true);
       of_cameras.push_back({.kind = FaultKind::kCameraAxis, .axis = axis});
       of_cameras.push_back(
           {.kind = FaultKind::kCameraShear, .axis = axis, .by_axis = (axis + 1) % 3});
@@ -378,6 +372,7 @@ class FaultSearch {
   std::vector<int> posture_;  // by residual block; -1: a prior
   Blocks at_;
   double squares_ = 0.0;
+  std::vector<Blocks> by_axis_;  ///< derivatives by displacements of the markers' frame
   std::vector<RecordingFault> found_;
 };
 

@@ -20,9 +20,9 @@ namespace elastocal {
 /// - in a table, a steady drift of each joint; in motions, a lag;
 /// - the scale of the cameras along one of their axes, a shear of two axes, and a scale that
 ///   changes from the middle outwards;
-/// - in a table whose root link is held: a displacement of the markers' frame along one of its
-/// axes,
-///   from a posture on, or from one posture to another;
+/// - in a table whose root link is held: a displacement of the markers' frame in any direction,
+/// from
+///   a posture on, or from one posture to another;
 /// - the scale of the cameras in one of several trials (a common scale of all trials looks like a
 ///   robot with wrong lengths).
 ///

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "elastocal/screening/doubtful_gains.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "elastocal/math/numbers.hpp"
+#include "elastocal/math/statistics.hpp"
+#include "elastocal/robot/coordinates.hpp"
+#include "elastocal/robot/linkage.hpp"
+#include "elastocal/robot/move_motors.hpp"
+#include "elastocal/screening/measured_faults.hpp"
+
+namespace elastocal {
+namespace {
+
+/// The gains that a fit describes as errors of gears and leads.
+std::vector<RecordingFault> GainsOfGears(const CalibrationResult& result) {
+  std::vector<RecordingFault> gains;
+  for (int i = 0; i < result.model.parameter_count(); ++i) {
+    const Parameter& parameter = result.model.parameters[Size(i)];
+    if (parameter.correction < 0) continue;
+    const Correction& correction = result.model.elasticity.corrections[Size(parameter.correction)];
+    if (correction.shape != CorrectionShape::kGear) continue;
+    const double ratio = result.delta[i];
+    gains.push_back({.coordinate = result.model.tree.joints[Size(correction.joint)].coordinate,
+                     .size = 1.0 / (1.0 + ratio) - 1.0,
+                     .sd = result.sd[i]});
+  }
+  return gains;
+}
+
+}  // namespace
+
+std::vector<RecordingFault> FindDoubtfulGains(const CalibrationResult& result,
+                                              const Recording& recording,
+                                              const CalibrationOptions& options) {
+  constexpr double kOneInFifty = 0.02;
+  const RobotTree& tree = result.model.tree;
+  std::vector<RecordingFault> gains = GainsOfGears(result);
+  std::set<int> coordinates;
+  for (const int joint : result.model.active_joints) {
+    if (!IsMovedByRods(tree, joint)) coordinates.insert(tree.joints[Size(joint)].coordinate);
+  }
+  for (const RecordingFault& gear : gains) coordinates.erase(gear.coordinate);
+  std::vector<RecordingFault> tried;
+  for (const int coordinate : coordinates) tried.push_back({.coordinate = coordinate});
+  for (const RecordingFault& one : MeasureFaults(tried, result, recording, options)) {
+    gains.push_back(one);
+  }
+  const auto joints = static_cast<double>(gains.size());
+  const double freedom = std::max(1, recording.posture_count() - 1);
+  std::erase_if(gains, [&](const RecordingFault& gain) {
+    const bool slides = JointOfCoordinate(tree, gain.coordinate).type == JointType::kPrismatic;
+    const double size = std::abs(gain.size);
+    return !(gain.sd > 0.0) || size < LeastSize(FaultKind::kJointGain, slides) ||
+           size > LargestSize(FaultKind::kJointGain, slides) ||
+           joints * StudentTwoSidedTail(size / gain.sd, freedom) > kOneInFifty;
+  });
+  return gains;
+}
+
+std::string DescribeDoubtfulGain(const RecordingFault& gain, const RobotTree& tree) {
+  char text[320];
+  std::snprintf(text, sizeof text,
+                ": its positions may be %.4f +- %.4f times the true ones, which is not certain "
+                "enough to object to; if its log or its gear has such a factor (turn the joint to "
+                "a known angle and compare), --accept gain:%s=%.5f corrects it",
+                1.0 + gain.size, gain.sd, JointOfCoordinate(tree, gain.coordinate).name.c_str(),
+                1.0 + gain.size);
+  return JointOfCoordinate(tree, gain.coordinate).name + text;
+}
+
+}  // namespace elastocal
