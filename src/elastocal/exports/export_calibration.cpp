@@ -123,15 +123,33 @@ struct Kept {
   std::vector<std::string> comments;  ///< names of these joints, with the reason
 };
 
+/// Names of the causes that the format carries.
+std::set<std::string> CarriedCauses(const CalibratedRobot& robot, const ExportOptions& options) {
+  if (options.format != "c99" && options.format != "runtime") return {};
+  return CausesAtRunTime(robot.project.tree, robot.calibration);
+}
+
+/// Names of the causes that the format does not carry.
+std::set<std::string> CausesLeftOut(const CalibratedRobot& robot, const ExportOptions& options) {
+  const std::set<std::string> carried = CarriedCauses(robot, options);
+  std::set<std::string> left_out;
+  for (const Correction& cause : PossibleCorrections(robot.project.tree, std::nullopt)) {
+    if (!carried.contains(cause.name)) left_out.insert(cause.name);
+  }
+  return left_out;
+}
+
 /// Joints and legs whose exported errors are hardly determined.
 std::set<std::string> Insignificant(const CalibrationEstimate& estimate,
-                                    const StoredCalibration& exported, double least) {
+                                    const StoredCalibration& exported,
+                                    const std::set<std::string>& left_out, double least) {
   std::map<std::string, double> largest;
   for (const ParameterEstimate& parameter : estimate.parameters) {
     if (parameter.external) continue;
     double& most = largest[OwnerName(parameter.name)];
     const auto found = exported.joint_errors.find(parameter.name);
     if (found == exported.joint_errors.end() || !(parameter.sd > 0.0)) continue;
+    if (left_out.contains(parameter.name)) continue;
     most = std::max(most, std::abs(found->second) / parameter.sd);
   }
   std::set<std::string> names;
@@ -145,7 +163,8 @@ Kept KeepWhatHelps(const CalibratedRobot& robot, const CalibrationEstimate& esti
                    const ExportOptions& options) {
   Kept kept{IsRigid(options) ? AsInUrdf(robot.calibration) : robot.calibration, {}, {}};
   if (options.least_significance > 0.0) {
-    kept.nominal = Insignificant(estimate, kept.calibration, options.least_significance);
+    kept.nominal = Insignificant(estimate, kept.calibration, CausesLeftOut(robot, options),
+                                 options.least_significance);
     for (const std::string& name : kept.nominal) {
       kept.comments.push_back(
           fmt::format("{} is nominal: no error of {:g} standard deviations or more", name,
@@ -159,12 +178,10 @@ Kept KeepWhatHelps(const CalibratedRobot& robot, const CalibrationEstimate& esti
   };
   return_to_nominal();
   if (!options.least_gain) return kept;
-  GainOptions deployed{
-      .least = *options.least_gain, .with_loads = HasLoads(options), .nominal = kept.nominal};
-  if (options.format == "c99" || options.format == "runtime") {
-    deployed.causes = CausesAtRunTime(robot.project.tree, robot.calibration);
-  }
-  const HeldOutGains gains = FindHeldOutGains(robot, deployed);
+  const HeldOutGains gains = FindHeldOutGains(robot, {.least = *options.least_gain,
+                                                      .with_loads = HasLoads(options),
+                                                      .nominal = kept.nominal,
+                                                      .causes = CarriedCauses(robot, options)});
   for (const JointGain& joint : gains.study.joints) {
     if (!joint.kept) kept.nominal.insert(joint.owner);
   }

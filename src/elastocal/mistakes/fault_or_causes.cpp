@@ -218,7 +218,11 @@ bool ReplaceCauses(const std::vector<RecordingFault>& faults, Project project,
                 [&](const std::string& cause) { return removed.contains(cause); });
   if (LeavesNoMore(project, seed, undone, faults, left)) return true;
   if (!choose) return false;
-  project.elasticity = choose(undone);
+  try {
+    project.elasticity = choose(undone);
+  } catch (const InputError&) {  // the fault explains too little of it for any model
+    return false;
+  }
   return LeavesNoMore(project, seed, undone, faults, left);
 }
 

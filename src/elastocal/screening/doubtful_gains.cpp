@@ -24,6 +24,7 @@ std::vector<RecordingFault> GainsOfGears(const CalibrationResult& result) {
     if (parameter.correction < 0) continue;
     const Correction& correction = result.model.elasticity.corrections[Size(parameter.correction)];
     if (correction.shape != CorrectionShape::kGear) continue;
+    if (IsMovedByRods(result.model.tree, correction.joint)) continue;
     const double ratio = result.delta[i];
     gains.push_back({.coordinate = result.model.tree.joints[Size(correction.joint)].coordinate,
                      .size = 1.0 / (1.0 + ratio) - 1.0,
@@ -55,7 +56,7 @@ std::vector<RecordingFault> FindDoubtfulGains(const CalibrationResult& result,
   std::erase_if(gains, [&](const RecordingFault& gain) {
     const bool slides = JointOfCoordinate(tree, gain.coordinate).type == JointType::kPrismatic;
     const double size = std::abs(gain.size);
-    return !(gain.sd > 0.0) || size < LeastSize(FaultKind::kJointGain, slides) ||
+    return !(gain.sd > 0.0) || !(size >= LeastSize(FaultKind::kJointGain, slides)) ||
            size > LargestSize(FaultKind::kJointGain, slides) ||
            joints * StudentTwoSidedTail(size / gain.sd, freedom) > kOneInFifty;
   });
@@ -63,14 +64,16 @@ std::vector<RecordingFault> FindDoubtfulGains(const CalibrationResult& result,
 }
 
 std::string DescribeDoubtfulGain(const RecordingFault& gain, const RobotTree& tree) {
+  const Joint& joint = JointOfCoordinate(tree, gain.coordinate);
+  const bool slides = joint.type == JointType::kPrismatic;
   char text[320];
   std::snprintf(text, sizeof text,
                 ": its positions may be %.4f +- %.4f times the true ones, which is not certain "
-                "enough to object to; if its log or its gear has such a factor (turn the joint to "
-                "a known angle and compare), --accept gain:%s=%.5f corrects it",
-                1.0 + gain.size, gain.sd, JointOfCoordinate(tree, gain.coordinate).name.c_str(),
-                1.0 + gain.size);
-  return JointOfCoordinate(tree, gain.coordinate).name + text;
+                "enough to object to; if its log or its %s has such a factor (move the joint by a "
+                "known %s and compare), --accept gain:%s=%.5f corrects it",
+                1.0 + gain.size, gain.sd, slides ? "lead" : "gear", slides ? "length" : "angle",
+                joint.name.c_str(), 1.0 + gain.size);
+  return joint.name + text;
 }
 
 }  // namespace elastocal

@@ -21,8 +21,7 @@ namespace elastocal {
 /// - the scale of the cameras along one of their axes, a shear of two axes, and a scale that
 ///   changes from the middle outwards;
 /// - in a table whose root link is held: a displacement of the markers' frame in any direction,
-/// from
-///   a posture on, or from one posture to another;
+///   from a posture on, or from one posture to another;
 /// - the scale of the cameras in one of several trials (a common scale of all trials looks like a
 ///   robot with wrong lengths).
 ///
