@@ -6,9 +6,10 @@
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
 execute_process(COMMAND ${WRITER} ${WORK} COMMAND_ERROR_IS_FATAL ANY)
-set(fast_flags "-O2 -ffast-math" "-O1 -ffp-contract=fast")
-if(CMAKE_HOST_SYSTEM_PROCESSOR MATCHES x86_64)
-  set(fast_flags "-O2 -ffast-math" "-O1 -ffp-contract=fast -march=native") # fuses where it can
+set(fast_flags "-O2 -ffast-math" "-O2 -ffp-contract=fast")
+cmake_host_system_information(RESULT platform QUERY OS_PLATFORM)
+if(platform STREQUAL x86_64)
+  set(fast_flags "-O2 -ffast-math" "-O2 -ffp-contract=fast -march=native") # fuses where it can
 endif()
 foreach(compiler gcc clang clang-14 g++)
   find_program(${compiler}_found ${compiler})
