@@ -4,6 +4,7 @@
 
 #include "elastocal/robot/legs.hpp"
 #include "elastocal/robot/statics.hpp"
+#include "elastocal/runtime/core_statics.h"
 #include "elastocal/simulation/virtual_robot.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/runtime_fixture.hpp"
@@ -90,6 +91,18 @@ TEST_F(Runtime, OnTwoFeetLegsGiveWayAsTheirSpringsDo) {
   EXPECT_NEAR(sinks(1), on_one, 1e-3 * on_one);
   // With the whole weight of the legs, it would give way by a fifth less.
   EXPECT_NEAR(sinks(3), on_two, 0.02 * on_two);
+}
+
+// The place of one foot has no moments, but a compiler that orders sums anew leaves rounding there.
+TEST(RuntimeShares, RoundingGivesOneFootNoSlope) {
+  double slope[2] = {1.0, 1.0};
+  ec_slopes(1e-34, 2e-35, 3e-34, 0.02, -0.01, slope);
+  EXPECT_EQ(slope[0], 0.0);
+  EXPECT_EQ(slope[1], 0.0);
+  // Two feet, 0.2 m apart along y; the weight is 0.03 m from the middle: 1/2 + 0.03 / 0.2 on one.
+  ec_slopes(0.0, 0.0, 0.02, 0.01, 0.03, slope);
+  EXPECT_EQ(slope[0], 0.0);
+  EXPECT_NEAR(0.5 + 0.1 * slope[1], 0.65, 1e-15);
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ bool IsCName(const std::string& name);
 
 /// One self-contained C99 header (also valid C++) for this robot and this calibration. It contains
 /// the functions of Compensator, their constants, and indices of joints, links and feet by name. It
-/// needs only math.h and allocates nothing. The functions are those of the library, so that the
-/// same compiler gives the same bits.
+/// needs only math.h, stdint.h and string.h, and allocates nothing. The functions are those of the
+/// library, so that the same compiler gives the same bits.
 ///
 /// Throws std::invalid_argument for a prefix that is no C name, and as Compensator.
 std::string MakeCHeader(RuntimeModel model, const CHeaderOptions& options);

@@ -115,16 +115,21 @@ static inline void ec_floor_axes(const double* gravity, double* a, double* b) {
   for (i = 0; i < 3; ++i) b[i] /= size;
 }
 
+/* Feet whose second moment is no more, m^2, are at one place (a micrometre apart). */
+#define EC_SAME_PLACE 1e-12
+
 /* Slopes of the shares along the two directions: the least shares that put the weight at (x, y)
    from the mean of the feet, whose second moments are xx, xy, yy. Feet in a line have no slope
-   across it. */
+   across it, and one foot has none: what its moments are beside 0 is rounding, which a compiler
+   that orders sums anew (-ffast-math) or fuses products with them leaves there. */
 static inline void ec_slopes(double xx, double xy, double yy, double x, double y, double* slope) {
   const double determinant = xx * yy - xy * xy, trace = xx + yy;
   slope[0] = slope[1] = 0.0;
+  if (trace <= EC_SAME_PLACE) return;
   if (determinant > 1e-9 * trace * trace) {
     slope[0] = (yy * x - xy * y) / determinant;
     slope[1] = (xx * y - xy * x) / determinant;
-  } else if (trace > 0.0) {
+  } else {
     slope[0] = (xx * x + xy * y) / (trace * trace);
     slope[1] = (xy * x + yy * y) / (trace * trace);
   }
