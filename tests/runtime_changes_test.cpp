@@ -32,6 +32,8 @@ class ChangeWatch {
       const double planned = std::abs(Round(plan[c] - last_plan_[c]));
       const double moved = std::abs(Round(command[c] - last_command_[c]));
       over_ = std::max(over_, moved - std::max(kMost, planned));
+      const double beside = Round(command[c] - plan[c] - (last_command_[c] - last_plan_[c]));
+      beside_ = std::max(beside_, std::abs(beside));
       most_[c] = std::max(most_[c], moved);
     }
     last_plan_ = plan;
@@ -39,11 +41,13 @@ class ChangeWatch {
   }
 
   double over() const { return over_; }
+  /// The largest change of a correction from one call to the next.
+  double beside() const { return beside_; }
   const Joints& most() const { return most_; }
 
  private:
   Eigen::VectorXd last_plan_, last_command_;
-  double over_ = 0.0;
+  double over_ = 0.0, beside_ = 0.0;
   Joints most_ = Joints::Zero();
 };
 
@@ -75,6 +79,7 @@ TEST(RuntimeChanges, LimitsHoldWhereLoadsComeFromElsewhere) {
         free_watch.Look(plan, free.command());
       }
       EXPECT_LE(watch.over(), 1e-12) << run << ", " << calls;
+      EXPECT_LE(watch.beside(), 0.1 * kMost + 1e-12) << run << ", " << calls;
       free_most = std::max(free_most, free_watch.over());
     }
     EXPECT_GT(free_most, 0.05);
@@ -110,6 +115,23 @@ TEST(RuntimeChanges, LimitsAreThoseOfEachJoint) {
       EXPECT_LT(robot.residual_m(), free.residual_m() + 2e-4) << jump;
     }
   }
+}
+
+// With an error of its gear, the robot is not the same a turn further on: the commands beside such
+// a step are those of a motion that begins there.
+TEST(RuntimeChanges, AWholeTurnIsAMotionWhereAGearIsWrong) {
+  RuntimeModel model = ElasticArm(3e-4);
+  model.lower[5] = -kInfinite;
+  model.upper[5] = kInfinite;
+  model.shifts.push_back({5, EC_GEAR, 5, 5e-3, 0.0, 1.0});
+  Compensator robot(model), begun(model);
+  Joints plan = (Joints() << 0.2, 0.6, -1.0, 0.2, 0.3, 3.1).finished();
+  robot.Command(plan, kStatics, 0);
+  plan[5] = -3.1;
+  robot.Command(plan, kStatics, 0);
+  begun.Command(plan, kStatics, 0);
+  EXPECT_LT((robot.command() - begun.command()).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT(robot.residual_rad(), 1e-3);
 }
 
 // An endless joint goes from half a turn to minus half a turn, which is no motion. All commands are

@@ -66,8 +66,9 @@ std::string DescribeStatus(CompensatorStatus status) {
       {EC_CORRECTION_CUT, "a correction is at its limit, and the end of a limb not in its place"},
       {EC_JOINT_LIMIT, "a joint is at its limit, and the end of a limb not in its place"},
       {EC_NOTHING_YET,
-       "no good positions so far: those of the zero posture were used, or the "
-       "command from which the motion starts"}};
+       "no good positions so far: those of the zero posture were used (of a command: those from "
+       "which "
+       "the motion starts, where these are known)"}};
   std::string text;
   for (const auto& [bit, words] : kTexts) {
     if ((status & bit) == 0) continue;

@@ -83,8 +83,9 @@ class Compensator {
   /// Limits the changes of commands along a motion (see Command) from one call to the next, by
   /// coordinate, rad or m: the largest speed of a joint times the time between calls. The
   /// correction relative to the plan changes by at most a tenth of that. A joint that the plan
-  /// moves further moves as far as the plan does. A negative entry or NaN is no limit; an empty
-  /// vector removes all limits.
+  /// moves further moves as far as the plan does. (Where the plan jumps, see Command, only the
+  /// limit itself holds.) A negative entry or NaN is no limit; an empty vector removes all limits.
+  /// Returns false, and changes nothing, for another number of entries.
   bool LimitChanges(const Eigen::Ref<const Eigen::VectorXd>& most) noexcept;
 
   /// Eases the corrections along a motion. A correction takes `calls` calls to reach its largest
@@ -92,7 +93,8 @@ class Compensator {
   /// as many to brake. This bounds the acceleration of commands relative to the plan. Near a
   /// stretched limb, where the best command starts and stops within one call, a larger deviation is
   /// left for some calls. Limits of positions and speeds of joints have priority. 0: the best
-  /// command is given unchanged. A call that stands by itself, or with other feet, is not eased.
+  /// command is given unchanged. A call that stands by itself, the first one after StartFrom(), or
+  /// one with other feet or torques from elsewhere is not eased: LimitChanges() alone holds there.
   void EaseChanges(double calls) noexcept;
 
   /// Forward kinematics with deflection (eq. 3, 5, 6): fills link_pose() and root_pose().

@@ -139,9 +139,10 @@ static inline void ec_ease(const ec_robot* robot, const double* nominal, const d
 }
 
 /* Where `command` moves joints further than they may: no further, in place, and the others do for
-   their branches what they can. Then it ends with a walk there, as ec_ease. */
+   their branches what they can; beside a plan that is `near` the last one, as gently as else. Then
+   it ends with a walk there, as ec_ease. */
 static inline void ec_hold_back(const ec_robot* robot, const double* nominal, const double* torque,
-                                unsigned support, ec_memory* memory, double* command,
+                                unsigned support, int near, ec_memory* memory, double* command,
                                 unsigned* status) {
   int branch, c, held = 0;
   for (branch = 0; branch < robot->branches; ++branch) memory->search[branch].state = EC_DONE;
@@ -158,10 +159,17 @@ static inline void ec_hold_back(const ec_robot* robot, const double* nominal, co
   }
   if (!held) return;
   for (c = 0; c < robot->coordinates; ++c) {
-    const double most = ec_most_move(nominal, c, memory);
+    const double most = ec_most_move(nominal, c, memory), last = memory->given[c];
+    const double beside = last + (nominal[c] - memory->last_q[c]);
+    const double gentle = EC_GENTLE * memory->most_change[c];
     command[c] = memory->best_q[c];
-    memory->lowest[c] = memory->given[c] - most;
-    memory->highest[c] = memory->given[c] + most;
+    memory->lowest[c] = last - most;
+    memory->highest[c] = last + most;
+    if (!near) continue;
+    if (memory->lowest[c] < beside - gentle) memory->lowest[c] = beside - gentle;
+    if (memory->highest[c] > beside + gentle) memory->highest[c] = beside + gentle;
+    if (memory->lowest[c] > command[c]) memory->lowest[c] = command[c];
+    if (memory->highest[c] < command[c]) memory->highest[c] = command[c];
   }
   memory->is_bound = 1;
   memory->is_settled = 0;

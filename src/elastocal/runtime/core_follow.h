@@ -166,7 +166,9 @@ static inline void ec_reach(const ec_robot* robot, const double* nominal, const 
   }
   for (t = 0; t < robot->branches; ++t) memory->search[t].last_left = memory->search[t].left;
   if (!is_goal) ec_ease(robot, nominal, torque, support, memory, command, &at_end);
-  if (memory->has_last) ec_hold_back(robot, nominal, torque, support, memory, command, &at_end);
+  if (memory->has_last) {
+    ec_hold_back(robot, nominal, torque, support, change >= 0.0, memory, command, &at_end);
+  }
   ec_give(robot, nominal, is_goal, command, memory);
   *status |= at_end | ec_in_the_way(robot, nominal, command, memory);
   ec_residual(robot, memory, residual);

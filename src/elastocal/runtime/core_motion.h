@@ -12,20 +12,25 @@ static inline double ec_position(const ec_joint* joint, const double* q) {
 #define EC_TURN 6.283185307179586
 
 /* Whether coordinate c turns without end, so that the robot is the same a turn further on: it has
-   no limits, and all joints that it moves turn by whole turns then. */
+   no limits, all joints that it moves turn by whole turns then, and no error of a gear grows. */
 static inline int ec_is_endless(const ec_robot* robot, int c) {
-  int k;
+  int k, i;
   if (ec_is_sane(robot->lower[c]) || ec_is_sane(robot->upper[c])) return 0;
   for (k = 0; k < robot->joints; ++k) {
     const ec_joint* joint = &robot->calibrated[k];
     if (joint->coordinate != c) continue;
     if (joint->prismatic || joint->multiplier != floor(joint->multiplier)) return 0;
   }
+  for (i = 0; i < robot->shifts; ++i) {
+    const ec_shift* shift = &robot->shift[i];
+    if (shift->function != EC_GEAR || shift->amount == 0.0) continue;
+    if (robot->calibrated[shift->source].coordinate == c) return 0;
+  }
   return 1;
 }
 
-/* The whole turns in a change of coordinate c, or of a joint that it moves, rad: what is left of
-   the change is the shorter way round. 0 for a coordinate that does not turn without end. */
+/* The whole turns in a change of coordinate c, rad: what is left of the change is the shorter way
+   round. 0 for a coordinate that does not turn without end. */
 static inline double ec_whole_turns(const ec_robot* robot, int c, double change) {
   if (fabs(change) <= 0.5 * EC_TURN || !ec_is_endless(robot, c)) return 0.0;
   return EC_TURN * floor(change / EC_TURN + 0.5);
@@ -58,10 +63,10 @@ static inline void ec_cross_play(const ec_robot* robot, const double* q, int pla
     const ec_joint* joint = &robot->calibrated[shift->joint];
     const double position = ec_position(joint, q);
     if (shift->function != EC_HYSTERESIS || shift->amount == 0.0) continue;
-    if (ec_is_sane(from[i])) {
-      double change = position - from[i];
-      change -= ec_whole_turns(robot, joint->coordinate, change);
-      side[i] += change / fabs(shift->amount);
+    if (ec_is_sane(from[i]) && joint->multiplier != 0.0) {
+      const double change = (position - from[i]) / joint->multiplier;
+      const double turns = ec_whole_turns(robot, joint->coordinate, change);
+      side[i] += joint->multiplier * (change - turns) / fabs(shift->amount);
     }
     if (side[i] > 1.0) side[i] = 1.0;
     if (side[i] < -1.0) side[i] = -1.0;

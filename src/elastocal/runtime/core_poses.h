@@ -131,7 +131,8 @@ typedef struct {
   int has_q;
 } ec_input;
 
-/* Working memory, of the sizes given; all of one call, but the last good input and command. */
+/* Working memory, of the sizes given. From call to call it keeps the last good input, the last
+   command and its pace, limits of changes, and the sides of plays. */
 typedef struct {
   ec_pose* body;        /* joints + 1 */
   double* motion;       /* 3 x joints: cosine, sine and slide of the joint's own motion */
