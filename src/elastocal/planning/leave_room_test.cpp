@@ -2,11 +2,16 @@
 #include "elastocal/planning/leave_room.hpp"
 
 #include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
 
 #include <gtest/gtest.h>
 
 #include "elastocal/planning/plan_motion.hpp"
+#include "elastocal/tables/read_file.hpp"
 #include "tests/expect_input_error.hpp"
+#include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 
 namespace elastocal {
@@ -28,6 +33,63 @@ TEST(LeaveRoom, MovesTheLimitsOfTurningJointsAndThoseOfPostures) {
   EXPECT_NEAR(narrow.motion.lower[c] - after.lower, inside, 1e-12);
   EXPECT_NEAR(after.upper - narrow.motion.upper[c], inside, 1e-12);
   EXPECT_EQ(LeaveRoom(project, 0.0).tree.joints[joint].limits.lower, before.lower);
+}
+
+// The posture of rest stays possible.
+TEST(LeaveRoom, WhereAJointRestsNearItsLimitLessIsLeft) {
+  Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const auto lower = [](const Project& of, const char* joint) {
+    return of.tree.joints[static_cast<std::size_t>(FindJoint(of.tree, joint))].limits.lower;
+  };
+  const int knee =
+      project.tree.joints[static_cast<std::size_t>(FindJoint(project.tree, "leg_left_4_joint"))]
+          .coordinate;
+  project.motion.rest[knee] = project.motion.lower[knee] + 2.0 * kOneDeg;
+  const Project narrow = LeavePossibleRoom(
+      project, Eigen::VectorXd::Constant(project.tree.coordinate_count(), 5.0 * kOneDeg));
+  EXPECT_NEAR(lower(narrow, "leg_left_2_joint") - lower(project, "leg_left_2_joint"), 5.0 * kOneDeg,
+              1e-12);
+  EXPECT_NEAR(lower(narrow, "leg_left_4_joint") - lower(project, "leg_left_4_joint"), 2.0 * kOneDeg,
+              1e-12);
+  EXPECT_NEAR(narrow.motion.lower[knee], project.motion.rest[knee], 1e-12);
+}
+
+// A project says how much room its robot needs; the command line says otherwise.
+TEST(LeaveRoom, AProjectAsksForIt) {
+  const std::filesystem::path talos = SourceFile("models/talos/project.yaml");
+  EXPECT_EQ(OwnRoom(ReadProject(talos)).maxCoeff(), 0.0);
+  const ScratchFolder folder;
+  std::filesystem::copy_file(talos.parent_path() / "talos.urdf", folder.path() / "talos.urdf");
+  std::string text = ReadFile(talos);
+  text.insert(text.find("  rest_deg:"), "  room_deg: {leg_left_2_joint: 5}\n");
+  const Project project = ReadProject(folder.Write("project.yaml", text));
+  EXPECT_NEAR(OwnRoom(project).sum(), 5.0 * kOneDeg, 1e-12);
+  const auto lower = [&](const std::optional<double>& given) {
+    const RobotTree tree = WithRoom(project, given).tree;
+    return tree.joints[static_cast<std::size_t>(FindJoint(tree, "leg_left_2_joint"))].limits.lower;
+  };
+  EXPECT_NEAR(lower({}) - lower(0.0), 5.0 * kOneDeg, 1e-12);
+  EXPECT_NEAR(lower(2.0) - lower(0.0), 2.0 * kOneDeg, 1e-12);
+  text.replace(text.find("joint: 5}"), 9, "joint: 50}");
+  ExpectInputError([&] { ReadProject(folder.Write("project.yaml", text)); }, {"room_deg", "45"});
+}
+
+// Sines of an elbow went beyond the range that the project asks for. Legs need theirs to balance.
+TEST(LeaveRoom, MotionsOfArmsKeepTheRangesOfPostures) {
+  Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const auto joint = [](const Project& of, const char* name) -> const Joint& {
+    return of.tree.joints[static_cast<std::size_t>(FindJoint(of.tree, name))];
+  };
+  const JointLimits elbow = joint(project, "arm_left_4_joint").limits;
+  const JointLimits knee = joint(project, "leg_left_4_joint").limits;
+  const double inside = 0.02 * (elbow.upper - elbow.lower);
+  EXPECT_NEAR(joint(KeepRanges(project), "arm_left_4_joint").limits.upper, elbow.upper, 1e-12);
+  project.motion.upper[joint(project, "arm_left_4_joint").coordinate] = -0.5;
+  project.motion.lower[joint(project, "leg_left_4_joint").coordinate] = 0.5;
+  const Project kept = KeepRanges(project);
+  EXPECT_NEAR(joint(kept, "arm_left_4_joint").limits.upper, -0.5 + inside, 1e-12);
+  EXPECT_NEAR(joint(kept, "arm_left_4_joint").limits.lower, elbow.lower, 1e-12);
+  EXPECT_EQ(joint(kept, "leg_left_4_joint").limits.lower, knee.lower);
 }
 
 // Six free degrees and a margin of 0.57 degrees make 6.57 degrees to the joint's own limit.
