@@ -79,6 +79,40 @@ TEST(DraftStudy, ClustersAreFatTrianglesOfDifferentSides) {
   }
 }
 
+// A calibration moves hands and feet of robots of any size by some millimetres, and joints by some
+// degrees; the nominal robot must not be planned to where the corrected one cannot follow.
+TEST(DraftStudy, LeavesRoomForCorrections) {
+  const ScratchFolder folder;
+  const ProjectDraft draft = DraftFile("models/talos/talos.urdf");
+  const Project project = ReadBack(draft, folder);
+  const auto of = [&](const std::string& joint) {
+    return draft.tree.joints[Size(FindJoint(draft.tree, joint))].coordinate;
+  };
+  const auto degrees = [](double angle) { return angle / kRadiansPerDegree; };
+  for (const std::string side : {"left", "right"}) {
+    const int knee = of("leg_" + side + "_4_joint"), elbow = of("arm_" + side + "_4_joint");
+    EXPECT_NEAR(degrees(draft.bent_ranges.at(knee)[0]), 30.0, 8.0);
+    EXPECT_NEAR(degrees(draft.bent_ranges.at(elbow)[1]), -40.0, 8.0);
+    EXPECT_NEAR(project.motion.lower[knee], draft.bent_ranges.at(knee)[0], 1e-3);
+    EXPECT_NEAR(project.motion.upper[elbow], draft.bent_ranges.at(elbow)[1], 1e-3);
+    EXPECT_GE(draft.rest.q[knee], draft.bent_ranges.at(knee)[0]);
+    EXPECT_LE(draft.rest.q[elbow], draft.bent_ranges.at(elbow)[1]);
+  }
+  // Zeros of 0.5 degrees at six joints of a leg add up.
+  for (const auto& [c, room] : draft.room) {
+    EXPECT_GT(degrees(room), 1.4) << c;
+    EXPECT_LT(degrees(room), 6.1) << c;
+  }
+  for (const std::string joint : {"leg_left_6_joint", "arm_left_4_joint"}) {
+    std::string other = joint;
+    other.replace(other.find("left"), 4, "right");
+    EXPECT_EQ(draft.room.at(of(joint)), draft.room.at(of(other)));
+  }
+  EXPECT_GT(draft.sphere_margin, 0.008);
+  const ProjectDraft small = DraftFile("tests/robots/mini_humanoid.urdf");
+  EXPECT_GT(small.sphere_margin, 1.5 * 0.004 * LongestBranch(small.tree));
+}
+
 /// Names of the limbs of the pole with the additional links `more`.
 std::vector<std::string> LimbsOfPole(const std::string& more) {
   std::vector<std::string> names;

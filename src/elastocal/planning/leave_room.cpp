@@ -102,24 +102,28 @@ Project LeavePossibleRoom(Project project, const Eigen::VectorXd& room_rad) {
   return Narrowed(std::move(project), room_rad, WhereRestIsNear::kLeaveLess);
 }
 
-Project KeepRanges(Project project) {
+Project KeepRanges(Project project, const RobotTree& own) {
+  constexpr double kRounding = 1e-9;
   const std::vector<bool> moves_a_foot = MovesAFoot(project);
   for (std::size_t c = 0; c < project.tree.coordinate_joint.size(); ++c) {
-    Joint& joint = project.tree.joints[Size(project.tree.coordinate_joint[c])];
-    const double range = joint.limits.upper - joint.limits.lower;
-    if (moves_a_foot[c] || !std::isfinite(range)) continue;
+    const int k = project.tree.coordinate_joint[c];
+    const JointLimits& described = own.joints[Size(k)].limits;
+    const double inside = kMostInside * (described.upper - described.lower);
+    if (moves_a_foot[c] || !std::isfinite(inside)) continue;
+    JointLimits& limits = project.tree.joints[Size(k)].limits;
     const auto i = static_cast<Eigen::Index>(c);
-    const double inside = kMostInside * range;
-    joint.limits.lower = std::max(joint.limits.lower, project.motion.lower[i] - inside);
-    joint.limits.upper = std::min(joint.limits.upper, project.motion.upper[i] + inside);
+    const double lower = project.motion.lower[i] - inside, upper = project.motion.upper[i] + inside;
+    if (lower > limits.lower + kRounding) limits.lower = lower;
+    if (upper < limits.upper - kRounding) limits.upper = upper;
   }
   return project;
 }
 
 Project WithRoom(Project project, const std::optional<double>& room_deg) {
-  if (room_deg) return KeepRanges(LeaveRoom(std::move(project), *room_deg * M_PI / 180.0));
-  const Eigen::VectorXd own = OwnRoom(project);
-  return KeepRanges(LeavePossibleRoom(std::move(project), own));
+  const RobotTree own = project.tree;
+  if (room_deg) return KeepRanges(LeaveRoom(std::move(project), *room_deg * M_PI / 180.0), own);
+  const Eigen::VectorXd room = OwnRoom(project);
+  return KeepRanges(LeavePossibleRoom(std::move(project), room), own);
 }
 
 }  // namespace elastocal

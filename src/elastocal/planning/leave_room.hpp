@@ -23,8 +23,9 @@ Eigen::VectorXd OwnRoom(const Project& project);
 Project LeavePossibleRoom(Project project, const Eigen::VectorXd& room_rad);
 
 /// The project whose joints that move no foot have their range of postures (design.range_deg) as
-/// limits, beyond which a motion has a fiftieth of the range for its ways.
-Project KeepRanges(Project project);
+/// limits, beyond which a motion has a fiftieth of the range for its ways. `own` is the robot with
+/// the limits of its description.
+Project KeepRanges(Project project, const RobotTree& own);
 
 /// LeaveRoom with the room of the command line, deg, where it is given, and else LeavePossibleRoom
 /// with that of the project; then KeepRanges.

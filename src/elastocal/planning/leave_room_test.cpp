@@ -83,10 +83,18 @@ TEST(LeaveRoom, MotionsOfArmsKeepTheRangesOfPostures) {
   const JointLimits elbow = joint(project, "arm_left_4_joint").limits;
   const JointLimits knee = joint(project, "leg_left_4_joint").limits;
   const double inside = 0.02 * (elbow.upper - elbow.lower);
-  EXPECT_NEAR(joint(KeepRanges(project), "arm_left_4_joint").limits.upper, elbow.upper, 1e-12);
+  // Nothing changes where postures have the whole range, also of a robot that leaves room.
+  for (const double room_deg : {0.0, 6.0}) {
+    const Project narrow = LeaveRoom(project, room_deg * kOneDeg),
+                  same = WithRoom(project, room_deg);
+    for (std::size_t k = 0; k < project.tree.joints.size(); ++k) {
+      EXPECT_NEAR(same.tree.joints[k].limits.lower, narrow.tree.joints[k].limits.lower, 1e-12);
+      EXPECT_NEAR(same.tree.joints[k].limits.upper, narrow.tree.joints[k].limits.upper, 1e-12);
+    }
+  }
   project.motion.upper[joint(project, "arm_left_4_joint").coordinate] = -0.5;
   project.motion.lower[joint(project, "leg_left_4_joint").coordinate] = 0.5;
-  const Project kept = KeepRanges(project);
+  const Project kept = KeepRanges(project, project.tree);
   EXPECT_NEAR(joint(kept, "arm_left_4_joint").limits.upper, -0.5 + inside, 1e-12);
   EXPECT_NEAR(joint(kept, "arm_left_4_joint").limits.lower, elbow.lower, 1e-12);
   EXPECT_EQ(joint(kept, "leg_left_4_joint").limits.lower, knee.lower);
@@ -108,6 +116,10 @@ TEST(LeaveRoom, APlanCountsToTheJointsOwnLimits) {
   EXPECT_EQ(plan.limits[1].worst, "6.60");
   EXPECT_EQ(plan.limits[1].limit, "6.57");
   CountToOwnLimits(own, own, {}, plan);
+  EXPECT_EQ(plan.limits[1].worst, "6.60");
+  Project one_end = own;  // the plan does not say which end is near: nothing is added
+  one_end.tree.joints[static_cast<std::size_t>(plan.margins.position.index)].limits.upper -= 0.5;
+  CountToOwnLimits(own, one_end, {}, plan);
   EXPECT_EQ(plan.limits[1].worst, "6.60");
 }
 
