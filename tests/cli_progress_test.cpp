@@ -101,8 +101,9 @@ TEST(LoggedProgress, WritesLinesWhereThereIsNoTerminal) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_FALSE(LoggedProgress("robot", true, 0.0));
   Terminal terminal;
-  LoggedProgress("robot", false, 0.0)(1, 3);
-  EXPECT_EQ(terminal.Read(), kErase + "robot 1/3" + kErase);
+  const Progress drawn = LoggedProgress("robot", false, 0.0);
+  drawn(1, 3);
+  EXPECT_EQ(terminal.Read(), kErase + "robot 1/3");
 }
 
 TEST(ProgressLine, IsNotDrawnWhereNobodyLooks) {
