@@ -3,6 +3,7 @@
 #include "elastocal/planning/chain_setups.hpp"
 #include "elastocal/planning/design_follow_up.hpp"
 #include "elastocal/planning/design_observations.hpp"
+#include "elastocal/planning/leave_room.hpp"
 #include "postures.hpp"
 
 namespace elastocal::python {
@@ -61,7 +62,7 @@ PyDesign DesignForInstruments(const Project& project, std::optional<int> count, 
 
 PyDesign DesignForMarkers(const Project& project, const PostureDesignOptions& options,
                           const Progress& progress) {
-  PostureDesign found = DesignPostures(project, options, progress);
+  PostureDesign found = DesignPostures(WithRoom(project, std::nullopt), options, progress);
   ExpectFeasible(found.infeasible);
   PyDesign design{project, found.postures(), FormatDesignSummary(project, found, options),
                   found.warnings()};

@@ -5,6 +5,7 @@
 
 #include "elastocal/files/output_set.hpp"
 #include "elastocal/io/motion_file.hpp"
+#include "elastocal/planning/leave_room.hpp"
 #include "postures.hpp"
 
 namespace elastocal::python {
@@ -128,10 +129,12 @@ PyPlan PlanFor(const ProjectOrFile& project_or_file, const py::object& postures,
   }
   CheckTries(project, tries);
   return Unlocked([&] {
+    const Project narrow = WithRoom(project, std::nullopt);
     PyPlan planned{project,
-                   kind ? PlanValidationMotion(project, of, seed, options, progress)
-                        : PlanMotion(project, given, options, progress),
+                   kind ? PlanValidationMotion(narrow, of, seed, options, progress)
+                        : PlanMotion(narrow, given, options, progress),
                    {}};
+    CountToOwnLimits(project, narrow, options, planned.plan);
     ExpectPlayable(planned.plan, balanced);
     planned.trials = TryMotion(project, planned.plan.whole.motion, tries);
     return planned;

@@ -88,6 +88,24 @@ TEST(ProgressLine, TellsTheTimeOfWorkWithoutSteps) {
   EXPECT_EQ(terminal.Read(), kErase + "fit of all models, 1 s");
 }
 
+TEST(LoggedProgress, WritesLinesWhereThereIsNoTerminal) {
+  testing::internal::CaptureStderr();
+  const Progress each = LoggedProgress("robot", false, 0.0);
+  ASSERT_TRUE(each);
+  each(0, 3);  // nothing is done yet
+  each(1, 3);
+  each(3, 3);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "robot 1/3\nrobot 3/3\n");
+  testing::internal::CaptureStderr();
+  LoggedProgress("robot", false, 60.0)(1, 3);  // fast work needs no lines
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_FALSE(LoggedProgress("robot", true, 0.0));
+  Terminal terminal;
+  const Progress drawn = LoggedProgress("robot", false, 0.0);
+  drawn(1, 3);
+  EXPECT_EQ(terminal.Read(), kErase + "robot 1/3");
+}
+
 TEST(ProgressLine, IsNotDrawnWhereNobodyLooks) {
   {
     const int before = dup(STDERR_FILENO);

@@ -247,6 +247,17 @@ TEST_F(MarkerPlacesFile, APlaceMayBeSeenFromAnotherLinkOfTheBody) {
   EXPECT_GT((expected - Eigen::Vector3d(0.01, 0.02, 0.03)).norm(), 0.05);  // they differ
 }
 
+// A table that simulate or a laboratory left in the recording's folder is easily forgotten.
+TEST_F(MarkerPlacesFile, BesideARecordingThatIsNotUsedIsNamed) {
+  EXPECT_TRUE(WarnOfIdleMarkerPlaces({scratch_.path()}).empty());
+  scratch_.Write("marker_places.csv", "marker,x_mm,y_mm,z_mm,sd_mm\n");
+  const std::filesystem::path table = scratch_.Write("table.csv", "");
+  const auto warnings = WarnOfIdleMarkerPlaces({scratch_.path(), table});  // the same, once
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("marker_places.csv: these measured places"), std::string::npos);
+  EXPECT_NE(warnings[0].find("--marker-places"), std::string::npos);
+}
+
 TEST_F(MarkerPlacesFile, WhatIsWrongIsNamed) {
   const std::string head = "marker,x_mm,y_mm,z_mm,sd_mm\n";
   ExpectError(head, {"places.csv", "no row"});

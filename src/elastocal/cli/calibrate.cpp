@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <future>
+#include <iterator>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -86,6 +88,9 @@ int RunCalibration(const CalibrateOptions& options, CalibrationRun* run_out) {
   CalibrationRun run;
   CommandResult result = project.contact ? CalibrateByContacts(options, project, recordings)
                                          : CalibrateByMarkers(options, project, recordings, run);
+  if (options.marker_places.empty() && !project.contact) {
+    std::ranges::move(WarnOfIdleMarkerPlaces(recordings), std::back_inserter(result.warnings));
+  }
   if (!result.fine) result.errors.emplace_back("no calibrated URDF is written");
   RunRecord record = MakeRunRecord("calibrate", options.common, inputs_read.get());
   record.assumptions = {options.accept, options.prior, options.days, options.marker_places};

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -37,7 +38,8 @@ struct DesignCommand {
   std::string after;  ///< path of an earlier calibration; empty: none
   bool check = false;
   std::vector<std::string> joints;
-  double days = 1.0, marker_noise_mm = 0.3, limit_margin_deg = 0.0;
+  double days = 1.0, marker_noise_mm = 0.3;
+  std::optional<double> limit_margin_deg;
   /// Given options that do not apply to a design by observations (contact, instruments).
   std::vector<std::string> of_chains;
 };
@@ -115,8 +117,7 @@ int FollowUp(const DesignCommand& command, const Project& project) {
 }
 
 int Design(const DesignCommand& command) {
-  const Project project =
-      LeaveRoom(ReadProject(command.project), command.limit_margin_deg * M_PI / 180.0);
+  const Project project = WithRoom(ReadProject(command.project), command.limit_margin_deg);
   if (project.contact) {
     if (!command.of_chains.empty()) {
       throw InputError(command.of_chains.front() + ": it is for chains whose markers are seen; " +
@@ -249,9 +250,8 @@ void AddDesign(CLI::App& app, Action& action) {
   command
       ->add_option("--limit-margin-deg", options->limit_margin_deg,
                    "Left free at either end of the limits of turning joints, deg, at most a tenth "
-                   "of a range: room for `compensate`, see plan")
-      ->check(InBounds("plan --limit-margin-deg"))
-      ->capture_default_str();
+                   "of a range: room for `compensate`; default: design.room_deg of the project")
+      ->check(InBounds("plan --limit-margin-deg"));
   AddSearchOptions(*command, *options);
   AddFollowUpOptions(*command, *options);
   AddCommonOptions(*command, options->common);

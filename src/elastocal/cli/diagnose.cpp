@@ -52,6 +52,7 @@ int RunDiagnosis(const DiagnoseOptions& options) {
     Print(quiet, sentence + "\n");
   }
   Print(quiet, "\n" + CauseTable(diagnosis.report, options.common.verbose));
+  PrintWarnings(diagnosis.warnings);
   return kFine;
 }
 

@@ -31,7 +31,7 @@ struct PlanCommand {
   std::optional<double> zmp_margin_mm, lift_mm, inset_mm, approach_mm;
   std::string ros = "2";  ///< version of ROS for the stamps of the trajectory
   bool unbalanced = false, unstabilised = false;
-  double limit_margin_deg = 0.0;
+  std::optional<double> limit_margin_deg;
   MotionPlanOptions options;
   MotionTrialOptions tries{.robots = 0};
 };
@@ -143,7 +143,7 @@ int Plan(const PlanCommand& command) {
   RefuseIdleApproach(command, described);
   const MotionTrialOptions tries = TrialOptions(command);
   CheckTries(described, tries);
-  const Project project = LeaveRoom(described, command.limit_margin_deg * M_PI / 180.0);
+  const Project project = WithRoom(described, command.limit_margin_deg);
   std::vector<ChainPostures> postures;
   std::vector<std::string> chains;
   if (command.kind.empty()) {
@@ -166,7 +166,7 @@ int Plan(const PlanCommand& command) {
   outputs.Prepare();
 
   const bool quiet = command.common.Silent();
-  const Progress progress = TerminalProgress("planned chain", quiet);
+  const Progress progress = LoggedProgress("planned chain", quiet);
   const MotionPlanOptions options = PlanOptions(command);
   MotionPlan plan = command.kind.empty() ? PlanMotion(project, postures, options, progress)
                                          : PlanValidationMotion(project, KindNamed(command.kind),
@@ -176,7 +176,7 @@ int Plan(const PlanCommand& command) {
   if (Refuse(plan, command.unbalanced)) return kNotConverged;
 
   const std::vector<MotionTrial> trials =
-      TryMotion(project, plan.whole.motion, tries, TerminalProgress("robot", quiet));
+      TryMotion(project, plan.whole.motion, tries, LoggedProgress("robot", quiet));
   if (!trials.empty()) {
     Print(quiet, "\nPlayed by robots with errors that stand free\n" + TryTable(trials));
   }
@@ -277,9 +277,12 @@ void AddLimits(CLI::App& command, PlanCommand& options) {
       ->check(InBounds("plan --torque-share"));
   AddNumber(command, "--velocity-share", plan.limits.velocity_share,
             "Share of the velocity limits to be used");
-  AddNumber(command, "--limit-margin-deg", options.limit_margin_deg,
-            "Left free at either end of the limits of turning joints, deg, at most a tenth of a "
-            "range: room for `compensate`");
+  command
+      .add_option("--limit-margin-deg", options.limit_margin_deg,
+                  "Left free at either end of the limits of turning joints, deg, at most a tenth "
+                  "of a range: room for `compensate`; default: design.room_deg of the project, "
+                  "which is 0 where it is not given")
+      ->check(InBounds("plan --limit-margin-deg"));
 }
 
 /// Adds options for robots that play the motion, and for balance.

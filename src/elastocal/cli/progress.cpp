@@ -110,6 +110,24 @@ Progress TerminalProgress(const std::string& what, bool quiet) {
   return [line](int done, int total) { line->Set(done, total); };
 }
 
+Progress LoggedProgress(const std::string& what, bool quiet, double least_s) {
+  if (quiet || IsShown(quiet)) return TerminalProgress(what, quiet);
+  std::fflush(stdout);
+  using Clock = std::chrono::steady_clock;
+  const auto seconds = [](Clock::time_point since) {
+    return std::chrono::duration<double>(Clock::now() - since).count();
+  };
+  const auto begin = Clock::now();
+  const auto last = std::make_shared<Clock::time_point>(begin);
+  return [=](int done, int total) {
+    const std::lock_guard lock(Guard());
+    if (done <= 0 || seconds(*last) < least_s) return;
+    *last = Clock::now();
+    fmt::print(stderr, "{}\n", Text(what, done, total, seconds(begin)));
+    std::fflush(stderr);
+  };
+}
+
 std::function<void(const std::string&, int, int)> TerminalSteps(const std::string& first,
                                                                 bool quiet) {
   if (!IsShown(quiet)) return {};

@@ -48,6 +48,12 @@ Progress TerminalProgress(const std::string& what, bool quiet);
 std::function<void(const std::string& what, int done, int total)> TerminalSteps(
     const std::string& first, bool quiet);
 
+/// As TerminalProgress on a terminal. Elsewhere (a log file) each finished step is a line on
+/// standard error, "robot 1/3, 65 s", with at least `least_s` seconds between two lines; standard
+/// output is flushed first, so that a log shows what was printed before long work. Empty if
+/// `quiet`.
+Progress LoggedProgress(const std::string& what, bool quiet, double least_s = 10.0);
+
 /// Erases the terminal's line if a progress line is shown there.
 void EraseProgressLine();
 

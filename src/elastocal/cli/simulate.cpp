@@ -122,7 +122,7 @@ int Deploy(const SimulateCommand& command) {
   const StoredCalibration stored = ReadCalibration(calibration.calibration);
   const JointMotion motion = ReadMotion(command.motion, project);
   const std::vector<Execution> executions =
-      PlayExecutions(project, stored, motion, options, TerminalProgress("executed motion", quiet));
+      PlayExecutions(project, stored, motion, options, LoggedProgress("executed motion", quiet));
   const std::string json = FormatExecutions(project.tree, stored.fingerprint, executions);
   outputs.Set(command.common.json_file, json);
   const std::string no_report =

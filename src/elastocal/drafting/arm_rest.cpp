@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/drafting/arm_rest.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,12 +13,16 @@ namespace elastocal {
 
 bool HoldAhead(const RobotTree& tree, const std::vector<CollisionSphere>& spheres,
                const std::vector<SpherePair>& pairs, const ChainSetup& chain, double margin,
-               Eigen::VectorXd& q) {
+               const std::map<int, Eigen::Vector2d>& ranges, Eigen::VectorXd& q) {
   constexpr int kPostures = 4000;
   constexpr double kInside = 0.2;  // share of the box that is kept free on each side
   if (!chain.box) return false;
   const Eigen::Vector3d inset = kInside * (chain.box->upper - chain.box->lower);
-  const auto range = RangesOf(tree, 0.05);
+  auto range = RangesOf(tree, 0.05);
+  for (const auto& [c, narrower] : ranges) {
+    range.first[c] = std::max(range.first[c], narrower[0]);
+    range.second[c] = std::min(range.second[c], narrower[1]);
+  }
   Random random(1);
   double least = std::numeric_limits<double>::infinity();
   Eigen::VectorXd best = q;

@@ -67,12 +67,13 @@ std::array<double, 3> Sides(const Triple& t) {
 }
 
 /// Score of three markers: a triangle that is not flat, large up to a limit, with clearly different
-/// sides, in the open. Negative for a triangle that must not be used.
-double Worth(const std::array<const Candidate*, 3>& c, double largest) {
-  constexpr double kAlike = 0.88, kFlattest = 0.35;
+/// sides (each at most the share `alike` of the next), in the open. Negative for a triangle that
+/// must not be used.
+double Worth(const std::array<const Candidate*, 3>& c, double largest, double alike) {
+  constexpr double kFlattest = 0.35;
   const Triple triple = {c[0]->p, c[1]->p, c[2]->p};
   const std::array<double, 3> sides = Sides(triple);
-  if (sides[0] > kAlike * sides[1] || sides[1] > kAlike * sides[2]) return -1.0;
+  if (sides[0] > alike * sides[1] || sides[1] > alike * sides[2]) return -1.0;
   const double height =
       (triple[1] - triple[0]).cross(triple[2] - triple[0]).norm() / std::max(sides[2], 1e-9);
   if (height < kFlattest * sides[2]) return -1.0;
@@ -87,13 +88,15 @@ Triple Rounded(Triple triple) {
   return triple;
 }
 
-std::optional<Triple> BestTriple(const std::vector<Candidate>& candidates, double largest) {
+std::optional<Triple> BestTriple(const std::vector<Candidate>& candidates, double largest,
+                                 double alike) {
   double best = 0.0;
   std::optional<Triple> found;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     for (std::size_t j = i + 1; j < candidates.size(); ++j) {
       for (std::size_t k = j + 1; k < candidates.size(); ++k) {
-        const double worth = Worth({&candidates[i], &candidates[j], &candidates[k]}, largest);
+        const double worth =
+            Worth({&candidates[i], &candidates[j], &candidates[k]}, largest, alike);
         if (worth <= best + 1e-9) continue;
         best = worth;
         found = Triple{candidates[i].p, candidates[j].p, candidates[k].p};
@@ -202,8 +205,11 @@ class ClusterPlacer {
     constexpr double kLargest = 0.13, kLeast = 0.03;
     const double largest = kLargest * longest_, least = kLeast * longest_;
     const auto candidates = Spread(CandidatesOf(body), kCandidates, 0.3 * largest);
-    if (const auto triple = BestTriple(candidates, largest)) {
-      if (Sides(*triple)[1] >= least) return Rounded(*triple);
+    // Positions are measured with a ruler, to 10 mm. Labels are told apart by sides that differ by
+    // more, so sides are as different as shapes allow: below 0.7, triangles become flat.
+    for (const double alike : {0.75, 0.82, 0.88}) {
+      const auto triple = BestTriple(candidates, largest, alike);
+      if (triple && Sides(*triple)[1] >= least) return Rounded(*triple);
     }
     // A small plate on a link that is too small itself.
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();

@@ -10,6 +10,7 @@
 
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/drafting/arm_rest.hpp"
+#include "elastocal/drafting/draft_room.hpp"
 #include "elastocal/drafting/root_attitude.hpp"
 #include "elastocal/drafting/standing_draft.hpp"
 #include "elastocal/drafting/workspaces.hpp"
@@ -172,7 +173,8 @@ void HoldArmsAhead(ProjectDraft& draft, const Semantics& semantics) {
       continue;
     }
     const auto pairs = PairsMovedBy(draft.tree, draft.spheres, setup.coordinates, semantics);
-    if (!HoldAhead(draft.tree, draft.spheres, pairs, setup, draft.sphere_margin, draft.rest.q)) {
+    if (!HoldAhead(draft.tree, draft.spheres, pairs, setup, draft.sphere_margin, draft.bent_ranges,
+                   draft.rest.q)) {
       continue;
     }
     setup.largest_turn = kCone;
@@ -329,9 +331,13 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
       kMetresPerMm * std::max(1.0, std::round(kMargin * LongestBranch(draft.tree) / kMetresPerMm));
   AddChains(draft);
   AddSetups(draft);
+  BendLimbs(draft, semantics);
+  const double usual_margin = draft.sphere_margin;
+  LeaveRoomForCorrections(draft);
   HoldArmsAhead(draft, semantics);
   NarrowWaist(draft);
   draft.clusters = PlaceClusters(draft.tree, draft.shapes, draft.limbs, draft.rest.q);
+  ShrinkToMargin(draft, semantics, usual_margin);
   AddContacts(draft, semantics);
   JoinMirrors(draft);
   WarnOfGuesses(draft);

@@ -35,12 +35,15 @@ struct ProjectDraft {
   std::vector<DraftedSole> soles;
   std::vector<CollisionSphere> spheres;
   double sphere_margin = 0.0;  ///< m
+  std::map<int, double> room;  ///< at the limits of entries of q, rad (design.room_deg)
   RestPosture rest;
   std::vector<ChainSetup> designs;
   /// Share of the motors' efforts that planned motions may use: larger than usual where the robot
   /// could not lift a foot otherwise.
   double motion_effort_share = MotionSetup{}.motion_effort_share;
-  std::map<int, Eigen::Vector2d> ranges;  ///< restricted ranges of some entries of q
+  /// Restricted ranges of some entries of q: of waists, in which feet can keep their places, and of
+  /// elbows and knees, in which limbs are bent.
+  std::map<int, Eigen::Vector2d> ranges, bent_ranges;
   /// The soles are written to the project, because the robot can stand on them.
   bool stands = false;
   std::string held_because;           ///< reason why it cannot stand although there are soles

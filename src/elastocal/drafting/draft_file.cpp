@@ -120,13 +120,26 @@ class DraftWriter {
   }
 
   void WriteRanges() {
-    if (draft_.ranges.empty()) return;
-    text_ += "  range_deg:  # further than this, feet could not stay on the floor\n";
-    for (const auto& [c, range] : draft_.ranges) {
+    if (draft_.ranges.empty() && draft_.bent_ranges.empty()) return;
+    text_ += "  range_deg:\n";
+    const auto write = [&](const auto& ranges, const char* why) {
+      for (const auto& [c, range] : ranges) {
+        const Joint& joint = tree_.joints[Size(tree_.coordinate_joint[Size(c)])];
+        const double unit = joint.type == JointType::kRevolute ? kRadiansPerDegree : kMetresPerMm;
+        text_ += fmt::format("    {}: [{:.1f}, {:.1f}]  # {}\n", YamlWord(joint.name),
+                             range[0] / unit, range[1] / unit, why);
+      }
+    };
+    write(draft_.ranges, "beyond, feet could not stay on the floor");
+    write(draft_.bent_ranges, "a straighter limb leaves no room for corrections");
+  }
+
+  void WriteRoom() {
+    if (draft_.room.empty()) return;
+    text_ += "  room_deg:  # free at the limits of joints, for later corrections of commands\n";
+    for (const auto& [c, room] : draft_.room) {
       const Joint& joint = tree_.joints[Size(tree_.coordinate_joint[Size(c)])];
-      const double unit = joint.type == JointType::kRevolute ? kRadiansPerDegree : kMetresPerMm;
-      text_ += fmt::format("    {}: [{:.1f}, {:.1f}]\n", YamlWord(joint.name), range[0] / unit,
-                           range[1] / unit);
+      text_ += fmt::format("    {}: {:.0f}\n", YamlWord(joint.name), room / kRadiansPerDegree);
     }
   }
 
@@ -134,6 +147,7 @@ class DraftWriter {
     text_ += "# What the calibration postures keep to, chain by chain.\ndesign:\n";
     WriteRest();
     WriteRanges();
+    WriteRoom();
     text_ += fmt::format("  effort_share: {}  # of the URDF's effort; plan moves within {} of it\n",
                          kDraftedEffort, draft_.motion_effort_share);
     if (draft_.motion_effort_share != MotionSetup{}.motion_effort_share) {

@@ -227,31 +227,12 @@ int TipLink(const RobotTree& tree, const Semantics& semantics, const Limb& limb)
   return furthest;
 }
 
-/// Whether two limbs look like mirror images: they have the same number of joints, each at the
-/// reflected position of the other's.
-bool LookAlike(const RobotTree& tree, const std::vector<Transform>& T_root_body, const Limb& a,
-               const Limb& b) {
-  constexpr double kSamePlace = 0.02, kAside = 0.01;
-  if (a.from_body != b.from_body || a.joints.size() != b.joints.size()) return false;
-  const double longest = LongestBranch(tree);
-  bool aside = false;
-  for (std::size_t i = 0; i < a.joints.size(); ++i) {
-    const Eigen::Vector3d here = T_root_body[Size(a.joints[i]) + 1].translation();
-    const Eigen::Vector3d there = T_root_body[Size(b.joints[i]) + 1].translation();
-    const Eigen::Vector3d image(here.x(), -here.y(), here.z());
-    if ((there - image).norm() > kSamePlace * longest) return false;
-    if (tree.joints[Size(a.joints[i])].type != tree.joints[Size(b.joints[i])].type) return false;
-    aside = aside || std::abs(here.y()) > kAside * longest;
-  }
-  return aside;
-}
-
 void PairMirrors(const RobotTree& tree, std::vector<Limb>& limbs) {
   const auto poses = BodyPoses(tree, Eigen::VectorXd::Zero(tree.coordinate_count()));
   for (std::size_t i = 0; i < limbs.size(); ++i) {
     for (std::size_t j = i + 1; j < limbs.size(); ++j) {
       if (limbs[i].mirror >= 0 || limbs[j].mirror >= 0) continue;
-      if (!LookAlike(tree, poses, limbs[i], limbs[j])) continue;
+      if (!LookAlike(tree, poses, limbs[i], limbs[j], Eigen::Vector3d::UnitY(), 0.0)) continue;
       limbs[i].mirror = static_cast<int>(j);
       limbs[j].mirror = static_cast<int>(i);
     }
@@ -347,6 +328,24 @@ void LeaveOutToes(const RobotTree& tree, const RobotShapes& shapes, const Semant
 }
 
 }  // namespace
+
+bool LookAlike(const RobotTree& tree, const std::vector<Transform>& T_root_body, const Limb& a,
+               const Limb& b, const Eigen::Vector3d& normal, double offset) {
+  constexpr double kSamePlace = 0.02, kAside = 0.01;
+  if (a.from_body != b.from_body || a.joints.size() != b.joints.size()) return false;
+  const double longest = LongestBranch(tree);
+  bool aside = false;
+  for (std::size_t i = 0; i < a.joints.size(); ++i) {
+    if (a.joints[i] == b.joints[i]) continue;  // of the trunk
+    const Eigen::Vector3d here = T_root_body[Size(a.joints[i]) + 1].translation();
+    const Eigen::Vector3d there = T_root_body[Size(b.joints[i]) + 1].translation();
+    const double height = normal.dot(here) - offset;
+    if ((there - (here - 2.0 * height * normal)).norm() > kSamePlace * longest) return false;
+    if (tree.joints[Size(a.joints[i])].type != tree.joints[Size(b.joints[i])].type) return false;
+    aside = aside || std::abs(height) > kAside * longest;
+  }
+  return aside;
+}
 
 Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics) {
   Limbs found;

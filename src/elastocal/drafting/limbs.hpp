@@ -41,4 +41,11 @@ struct Limbs {
 /// last body.
 Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics);
 
+/// Whether two limbs look like mirror images in the plane normal . p = offset (unit normal, in the
+/// root link's frame): they begin on one body and have the same number and types of joints, each
+/// within 2 % of the longest branch of the other's reflected position, and one at least aside. The
+/// joints of a common trunk do not count. `T_root_body`: poses of the bodies (zero posture).
+bool LookAlike(const RobotTree& tree, const std::vector<Transform>& T_root_body, const Limb& a,
+               const Limb& b, const Eigen::Vector3d& normal, double offset);
+
 }  // namespace elastocal

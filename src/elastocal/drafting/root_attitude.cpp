@@ -23,37 +23,29 @@ struct SymmetryPlane {
   bool arms = false;   ///< names tell the sides of two limbs, long enough for arms
 };
 
-/// The plane in which the joints of two limbs are mirror images, if they are within 2 % of the
-/// longest limb, as PairMirrors requires of the x-z plane.
+/// The plane in which two limbs look like mirror images (LookAlike), if there is one.
 std::optional<SymmetryPlane> PlaneBetween(const RobotTree& tree,
                                           const std::vector<Transform>& T_root_body, const Limb& a,
                                           const Limb& b) {
-  constexpr double kSamePlace = 0.02, kApart = 0.02;
-  if (a.from_body != b.from_body || a.joints.size() != b.joints.size()) return {};
-  const double longest = LongestBranch(tree);
-  std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> places;
+  constexpr double kApart = 0.02;
+  if (a.joints.size() != b.joints.size()) return {};
+  int own = 0;  // joints beyond a common trunk
   Eigen::Vector3d between = Eigen::Vector3d::Zero(), middle = between;
   for (std::size_t i = 0; i < a.joints.size(); ++i) {
-    const int here = a.joints[i], there = b.joints[i];
-    if (here == there) continue;  // of the trunk
-    if (tree.joints[Size(here)].type != tree.joints[Size(there)].type) return {};
-    places.emplace_back(T_root_body[Size(here) + 1].translation(),
-                        T_root_body[Size(there) + 1].translation());
-    between += places.back().first - places.back().second;
-    middle += 0.5 * (places.back().first + places.back().second);
+    if (a.joints[i] == b.joints[i]) continue;
+    const Eigen::Vector3d here = T_root_body[Size(a.joints[i]) + 1].translation();
+    const Eigen::Vector3d there = T_root_body[Size(b.joints[i]) + 1].translation();
+    between += here - there;
+    middle += 0.5 * (here + there);
+    ++own;
   }
-  const auto count = static_cast<double>(places.size());
-  if (places.empty() || between.norm() < kApart * longest * count) return {};
-  constexpr std::size_t kJointsOfAnArm = 5;
-  SymmetryPlane plane{between.normalized(), between.normalized().dot(middle) / count};
+  if (own == 0 || between.norm() < kApart * LongestBranch(tree) * own) return {};
+  constexpr int kJointsOfAnArm = 5;
+  SymmetryPlane plane{between.normalized(), between.normalized().dot(middle) / own};
   plane.sides = SideByNames(tree, a) * SideByNames(tree, b) < 0;
   plane.legs = IsLegByNames(tree, a) && IsLegByNames(tree, b);
-  plane.arms = plane.sides && !plane.legs && places.size() >= kJointsOfAnArm;
-  for (const auto& [here, there] : places) {
-    const Eigen::Vector3d image =
-        here - 2.0 * (plane.normal.dot(here) - plane.offset) * plane.normal;
-    if ((there - image).norm() > kSamePlace * longest) return {};
-  }
+  plane.arms = plane.sides && !plane.legs && own >= kJointsOfAnArm;
+  if (!LookAlike(tree, T_root_body, a, b, plane.normal, plane.offset)) return {};
   return plane;
 }
 

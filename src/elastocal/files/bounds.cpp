@@ -154,6 +154,7 @@ std::vector<Bound> BoundsOfDesignAndTrials() {
       {"design.rest_deg.*", "deg or mm", -1e4, 1e4, "joints' limits"},
       {"design.range_deg.*", "deg or mm", -1e4, 1e4, "joints' limits"},
       {"design.limit_margin", "", 0, 0.4, "beyond, nearly nothing of the range is left"},
+      {"design.room_deg.*", "deg", 0, 45, "more is no room for a correction"},
       {"design.effort_share", "", 0, 1, "a share"},
       {"design.motion_effort_share", "", 0.01, 1, "a share"},
       {"design.dexterity_share", "", 0, 1, "a share of what the posture of rest has"},

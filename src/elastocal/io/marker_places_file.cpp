@@ -114,6 +114,24 @@ std::vector<MarkerMeasurement> ReadMarkerPlaces(const std::filesystem::path& fil
   return places;
 }
 
+std::vector<std::string> WarnOfIdleMarkerPlaces(
+    const std::vector<std::filesystem::path>& recordings) {
+  std::vector<std::string> warnings;
+  for (const std::filesystem::path& recording : recordings) {
+    const bool is_folder = std::filesystem::is_directory(recording);
+    const std::filesystem::path file =
+        (is_folder ? recording : recording.parent_path()) / "marker_places.csv";
+    if (!std::filesystem::is_regular_file(file)) continue;
+    std::string warning = file.string() +
+                          ": these measured places of markers lie beside the recording and are "
+                          "not used; calibrate --marker-places takes them";
+    if (std::count(warnings.begin(), warnings.end(), warning) == 0) {
+      warnings.push_back(std::move(warning));
+    }
+  }
+  return warnings;
+}
+
 std::string FormatMarkerPlaces(const std::vector<MarkerMeasurement>& places) {
   TableWriter table;
   for (const PlaceColumn column : {kMarker, kX, kY, kZ, kSd}) table.Add(kPlaceColumns[column]);

@@ -16,6 +16,11 @@ namespace elastocal {
 std::vector<MarkerMeasurement> ReadMarkerPlaces(const std::filesystem::path& file,
                                                 const Project& project);
 
+/// Warnings, one for each table `marker_places.csv` that lies in the folder of a recording (a
+/// folder or a file), for a command that was given no table: it would not be used.
+std::vector<std::string> WarnOfIdleMarkerPlaces(
+    const std::vector<std::filesystem::path>& recordings);
+
 /// Such a table as text, each place in the frame of the marker's link.
 std::string FormatMarkerPlaces(const std::vector<MarkerMeasurement>& places);
 

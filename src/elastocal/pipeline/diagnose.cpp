@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "elastocal/io/marker_places_file.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/cause_picture_json.hpp"
@@ -198,6 +199,7 @@ Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
     } else {
       StartFromEarlier(told.prior, told.days, measured, seed, project);
     }
+    if (told.marker_places.empty()) diagnosis.warnings = WarnOfIdleMarkerPlaces(recordings);
     std::vector<std::string> said_by_calibrate;
     const std::vector<MarkerMeasurement> places =
         OpenMarkerPlaces(told.marker_places, project, measured.calibration, {}, said_by_calibrate);

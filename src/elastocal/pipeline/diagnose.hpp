@@ -15,6 +15,7 @@ struct Diagnosis {
   std::string calibration_fingerprint;
   std::string recording;
   std::vector<std::filesystem::path> inputs;
+  std::vector<std::string> warnings;  ///< sentences
   double seconds = 0.0;
 };
 

@@ -281,17 +281,21 @@ void CountToOwnLimits(const Project& own, const Project& narrow, const MotionPla
                       MotionPlan& plan) {
   Worst& position = plan.margins.position;
   if (position.index < 0) return;
-  const auto lower = [&](const Project& project) {
-    return project.tree.joints[Size(position.index)].limits.lower;
-  };
-  const double room = lower(narrow) - lower(own);
+  const Joint& joint = own.tree.joints[Size(position.index)];
+  const JointLimits& left = narrow.tree.joints[Size(position.index)].limits;
+  const double room =
+      std::min(left.lower - joint.limits.lower, joint.limits.upper - left.upper);  // either end
   if (!(room > 0.0)) return;
   position.value += room;
-  const auto degrees = [](double angle) { return fmt::format("{:.2f}", angle * 180.0 / M_PI); };
+  const bool slides = joint.type == JointType::kPrismatic;
+  const auto text = [&](double distance) {
+    return slides ? fmt::format("{:.1f}", 1e3 * distance)
+                  : fmt::format("{:.2f}", distance * 180.0 / M_PI);
+  };
   for (LimitUse& use : plan.limits) {
     if (!use.what.starts_with("joint to end of range")) continue;
-    use.worst = degrees(position.value);
-    use.limit = degrees(options.limits.position_margin + room);
+    use.worst = text(position.value);
+    use.limit = text(options.limits.position_margin + room);
   }
 }
 

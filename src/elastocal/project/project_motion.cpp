@@ -211,7 +211,7 @@ void CarryRest(Project& project) {
 }
 
 void ReadDesign(const YamlValue& section, Project& project) {
-  section.ExpectKeys({"rest_deg", "limit_margin", "range_deg", "effort_share",
+  section.ExpectKeys({"rest_deg", "limit_margin", "range_deg", "room_deg", "effort_share",
                       "motion_effort_share", "dexterity_share", "chains", "cameras_mm"});
   MotionSetup& motion = project.motion;
   double limit_margin = kUsualLimitMargin;
@@ -222,6 +222,13 @@ void ReadDesign(const YamlValue& section, Project& project) {
   if (rest) CentreTurns(*rest, project.tree, limit_margin, motion);
   if (const auto ranges = section.Find("range_deg"))
     ReadRanges(*ranges, project.tree, limit_margin, motion);
+  if (const auto room = section.Find("room_deg")) {
+    // Checked here; design and plan read it (OwnRoom in planning/leave_room.hpp).
+    for (const auto& [name, value] : room->Entries()) {
+      DriverNamedBy(name, value, project.tree);
+      value.Bounded();
+    }
+  }
   section.ReadBounded("effort_share", motion.effort_share);
   section.ReadBounded("motion_effort_share", motion.motion_effort_share);
   if (rest) ReadRest(*rest, project.tree, motion);
