@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "elastocal/io/fingerprint.hpp"
@@ -74,19 +75,17 @@ void SetMotion(const Joint& joint, ec_joint& result) {
   result.offset = joint.offset;
 }
 
-/// Cuts the range of each coordinate to what the joints allow that mimic its driver. One that would
-/// leave nothing is passed over.
+/// Cuts each coordinate's range to what its mimic joints allow; passes over one that leaves none.
 void CutToFollowers(const RobotTree& tree, RuntimeModel& model) {
   for (const Joint& joint : tree.joints) {
-    if (!joint.mimic || joint.multiplier == 0.0) continue;
-    if (!(joint.limits.lower < joint.limits.upper)) continue;
-    const auto [low, high] = std::minmax({(joint.limits.lower - joint.offset) / joint.multiplier,
-                                          (joint.limits.upper - joint.offset) / joint.multiplier});
-    double &lower = model.lower[Size(joint.coordinate)],
-           &upper = model.upper[Size(joint.coordinate)];
-    if (!(std::max<double>(lower, low) < std::min<double>(upper, high))) continue;
-    lower = std::max<double>(lower, low);
-    upper = std::min<double>(upper, high);
+    const JointLimits& own = joint.limits;
+    if (!joint.mimic || joint.multiplier == 0.0 || !(own.lower < own.upper)) continue;
+    const double a = (own.lower - joint.offset) / joint.multiplier;
+    const double b = (own.upper - joint.offset) / joint.multiplier;
+    double& lower = model.lower[Size(joint.coordinate)];
+    double& upper = model.upper[Size(joint.coordinate)];
+    const double low = std::max(lower, std::min(a, b)), high = std::min(upper, std::max(a, b));
+    if (low < high) std::tie(lower, upper) = std::tuple(low, high);
   }
 }
 
@@ -304,12 +303,10 @@ void AddLimbs(const Project& project, const StoredRobot& robot, bool elastic, Ru
   std::vector<int> known_tips;  // several chains may end there
   for (const Chain& chain : project.chains) {
     const Link& link = project.tree.links[static_cast<std::size_t>(chain.tip_link)];
-    const bool known = std::any_of(known_tips.begin(), known_tips.end(),
-                                   [&](int tip) { return tip == chain.tip_link; });
+    const bool known = std::ranges::count(known_tips, chain.tip_link) > 0;
     if (link.body == 0 || known) continue;
     known_tips.push_back(chain.tip_link);
-    const auto leg = std::find_if(legs.begin(), legs.end(),
-                                  [&](const Leg& one) { return one.foot_link == chain.tip_link; });
+    const auto leg = std::ranges::find(legs, chain.tip_link, &Leg::foot_link);
     ec_tip tip{};
     tip.frame = {link.body, ToPose(link.T_body_link)};
     tip.foot = leg == legs.end() ? -1 : static_cast<int>(leg - legs.begin());
@@ -317,10 +314,6 @@ void AddLimbs(const Project& project, const StoredRobot& robot, bool elastic, Ru
     model.tips.push_back(tip);
   }
 }
-
-}  // namespace
-
-namespace {
 
 /// Whether the model has all joint parameters in the file.
 bool HasAll(const ErrorModel& model, const StoredCalibration& calibration) {
