@@ -21,6 +21,7 @@
 #include "elastocal/tables/read_file.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
+#include "tests/tiago_hand.hpp"
 
 namespace elastocal {
 namespace {
@@ -84,7 +85,7 @@ class MeasuredTiago : public testing::Test {
   }
 
   static std::string ProjectOf(const std::filesystem::path& urdf, const std::string& more) {
-    return "robot: {urdf: " + urdf.string() + "}\n" + kHand + more;
+    return "robot: {urdf: " + urdf.string() + "}\n" + kTiagoHand + more;
   }
   CalibrationRun Run(const std::function<void(NumberTable&)>& change,
                      const std::string& more = kPlain) const {
@@ -93,18 +94,6 @@ class MeasuredTiago : public testing::Test {
     return CalibrateTable(ProjectOf(urdf_, more), table);
   }
 
-  static constexpr const char* kHand = R"(
-chains: [{name: arm, tip: arm_7_link}]
-markers:
-  single:
-    - {name: M1, link: arm_7_link, position_mm: [0, 70, 130]}
-    - {name: M2, link: arm_7_link, position_mm: [0, -90, 145]}
-    - {name: M3, link: arm_7_link, position_mm: [0, -60, 235]}
-    - {name: M4, link: arm_7_link, position_mm: [0, 50, 235]}
-recording:
-  ignore: [shipped_row, t_start_robot, t_end_robot, marker_std_mm]
-  columns: {markers: {M1: [x1, y1, z1], M2: [x2, y2, z2], M3: [x3, y3, z3], M4: [x4, y4, z4]}}
-)";
   /// Nothing is chosen, which takes seconds.
   static constexpr const char* kPlain =
       "elasticity: {torsion: ['*'], bending: []}\ncalibration: {extra: none}\n";

@@ -20,6 +20,7 @@
 #include "elastocal/tables/read_file.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
+#include "tests/tiago_hand.hpp"
 
 namespace elastocal {
 namespace {
@@ -32,7 +33,7 @@ class TiagoCauses : public testing::Test {
   }
   static Project ProjectWith(const std::string& extra) {
     const std::string text = "robot: {urdf: " + SharedFile("robots/tiago/tiago_arm.urdf").string() +
-                             "}\n" + kTiago + "calibration: {extra: " + extra + "}\n";
+                             "}\n" + kTiagoHand + "calibration: {extra: " + extra + "}\n";
     return ParseProject(text, SourceFile("project.yaml"));
   }
   /// The errors on the other day without any fit.
@@ -52,18 +53,6 @@ class TiagoCauses : public testing::Test {
     return OnAnotherDay(project, run).marker_rmse_3d[0];
   }
 
-  static constexpr const char* kTiago = R"(
-chains: [{name: arm, tip: arm_7_link}]
-markers:
-  single:
-    - {name: M1, link: arm_7_link, position_mm: [0, 70, 130]}
-    - {name: M2, link: arm_7_link, position_mm: [0, -90, 145]}
-    - {name: M3, link: arm_7_link, position_mm: [0, -60, 235]}
-    - {name: M4, link: arm_7_link, position_mm: [0, 50, 235]}
-recording:
-  ignore: [shipped_row, t_start_robot, t_end_robot, marker_std_mm]
-  columns: {markers: {M1: [x1, y1, z1], M2: [x2, y2, z2], M3: [x3, y3, z3], M4: [x4, y4, z4]}}
-)";
   const std::filesystem::path training_ = SharedFile("data/tiago_mocap/training.csv");
 };
 

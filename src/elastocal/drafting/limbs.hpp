@@ -34,11 +34,10 @@ struct Limbs {
 /// Legs are limbs with a mirror image whose ends are the lowest of the robot in the zero posture,
 /// well below the root link (or below their own first joint where the root link is a frame on the
 /// floor), and that do not begin well above it (as arms of an upper body do). A leg ends with the
-/// foot; toes that a joint moves belong to none (those of both legs
-/// of a pair, or of neither). Names are those of
-/// the SRDF's groups, or given by NameLimb: "left_leg", "right_arm", "head"; they are unique and
-/// valid as names of files. The tip is the link that the SRDF names, or the furthest link of the
-/// last body.
+/// foot; toes that a joint moves belong to none (those of both legs of a pair, or of neither).
+/// Names are those of the SRDF's groups, or given by NameLimb: "left_leg", "right_arm", "head";
+/// they are unique and valid as names of files. The tip is the link that the SRDF names, or the
+/// furthest link of the last body.
 Limbs FindLimbs(const RobotTree& tree, const RobotShapes& shapes, const Semantics& semantics);
 
 /// Whether two limbs look like mirror images in the plane normal . p = offset (unit normal, in the

@@ -17,6 +17,7 @@
 #include "elastocal/exports/export_texts.hpp"
 #include "elastocal/exports/held_out_gains.hpp"
 #include "elastocal/exports/open_frames.hpp"
+#include "elastocal/exports/runtime_causes.hpp"
 #include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/files/xml_edit.hpp"
 #include "elastocal/io/linkage_file.hpp"

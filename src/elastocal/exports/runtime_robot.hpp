@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <set>
 #include <string>
 
 #include "elastocal/io/calibration_file.hpp"
@@ -24,10 +23,6 @@ enum class RuntimeContent {
 /// (NominalFingerprint), and for parameters that the project's robot does not have.
 RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& calibration,
                               RuntimeContent content = RuntimeContent::kEverything);
-
-/// Names of the causes beyond geometry and springs (corrections.hpp) that the calibration found and
-/// a robot model contains: those that depend on motion and loads only.
-std::set<std::string> CausesAtRunTime(const RobotTree& tree, const StoredCalibration& calibration);
 
 /// Text that a model without tips can correct no command.
 std::string NothingToCorrect();
