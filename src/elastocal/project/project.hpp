@@ -163,8 +163,7 @@ int FindChain(const Project& project, const std::string& name);
 int FindCluster(const Project& project, const std::string& name);
 
 /// The project's clusters, and those that single markers on the same link form: they keep their
-/// distances as well. These have the name of the link, made unlike the names of the project's
-/// clusters.
+/// distances as well. These have the name of the link, made unlike those of the others.
 std::vector<MarkerCluster> RigidClusters(const Project& project);
 
 /// Markers carried by the links of a chain, beyond its `from` link up to and including its tip.
