@@ -103,8 +103,12 @@ TEST_F(Gains, CountCausesWhereTheExportCarriesThem) {
   Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
   Of(truth, cause) = 5e-3;
   HeldOutSplit split;
-  split.training = Record(truth, 30, 1);
-  split.held_out = Record(truth, 60, 2);
+  split.training = Record(Eigen::VectorXd::Zero(truth.size()), 30, 1);
+  split.held_out = Record(Eigen::VectorXd::Zero(truth.size()), 60, 2);
+  for (Recording* recording : {&split.training, &split.held_out}) {  // with their noise
+    recording->markers += PredictedPositions(model_, *recording, truth, {}) -
+                          PredictedPositions(model_, *recording, 0.0 * truth, {});
+  }
   split.model = model_;
   split.delta = truth;
   const GainStudy with = StudyGains({split}, {}, {.least = 0.0, .causes = {cause}});

@@ -15,6 +15,9 @@ namespace elastocal {
 namespace {
 
 constexpr double kNineInTen = 1.2816;  // quantile of the normal distribution
+// Divisions into folds by which a search is judged as a whole, and postures of all divisions: the
+// chance of a division matters in small tables.
+constexpr int kMostDeals = 10, kMostJudged = 600;
 
 double ErrorOf(const LinearStudy::Posture& posture, const Eigen::VectorXd& residual) {
   return std::sqrt(residual.cwiseProduct(posture.to_metres).squaredNorm() /
@@ -53,8 +56,9 @@ class Search {
         sums_(sums),
         seed_(seed) {}
 
-  /// Tests every cause that is not taken, beside those that are.
-  std::vector<CauseFinding> Findings(const std::vector<int>& taken) {
+  /// Tests every cause that is not taken, beside those that are. `significant`: only those that are
+  /// significant are judged by held-out postures and returned.
+  std::vector<CauseFinding> Findings(const std::vector<int>& taken, bool significant = false) {
     const BaseFit fit(study_, sums_, taken);
     PlaceBeside(fit);
     std::vector<CauseFinding> findings;
@@ -65,6 +69,7 @@ class Search {
       causes_.push_back(cause);
     }
     Holm(findings);
+    if (significant) KeepSignificant(findings);
     HeldOut(taken, findings);
     return findings;
   }
@@ -72,7 +77,7 @@ class Search {
   std::vector<int> Forward(std::vector<CauseFinding>* chosen, std::vector<CauseFinding>* all) {
     std::vector<int> taken;
     while (static_cast<int>(taken.size()) < options_.most) {
-      const std::vector<CauseFinding> findings = Findings(taken);
+      const std::vector<CauseFinding> findings = Findings(taken, chosen == nullptr);
       if (taken.empty() && all != nullptr) *all = findings;
       int best = -1;
       for (std::size_t i = 0; i < findings.size(); ++i) {
@@ -208,6 +213,18 @@ class Search {
     }
   }
 
+  void KeepSignificant(std::vector<CauseFinding>& findings) {
+    std::vector<CauseFinding> kept;
+    std::vector<int> causes;
+    for (std::size_t i = 0; i < findings.size(); ++i) {
+      if (!(findings[i].p_adjusted < options_.level)) continue;
+      kept.push_back(std::move(findings[i]));
+      causes.push_back(causes_[i]);
+    }
+    findings = std::move(kept);
+    causes_ = std::move(causes);
+  }
+
   /// Computes the held-out errors without any further cause and with each.
   void HeldOut(const std::vector<int>& taken, std::vector<CauseFinding>& findings) {
     const auto rows = static_cast<Eigen::Index>(study_.postures.size());
@@ -281,43 +298,59 @@ class Search {
   double error_ = 0.0;
 };
 
-/// Repeats the search without each fold and judges its choice on that fold.
+/// Repeats the search without a fold and judges its choice on that fold: adds the squared errors of
+/// its postures without causes and with those that were chosen.
+void JudgeFold(const LinearStudy& study, const CauseSearchOptions& options,
+               const std::vector<int>& postures, const StudySums& all, std::vector<int> fold,
+               Eigen::MatrixX2d& squares) {
+  StudySums training = all;
+  for (int i : fold) training.Add(study.postures[static_cast<std::size_t>(i)], -1.0);
+  std::sort(fold.begin(), fold.end());
+  std::vector<int> rest;
+  std::set_difference(postures.begin(), postures.end(), fold.begin(), fold.end(),
+                      std::back_inserter(rest));
+  Search search(study, options, rest, training, options.seed);
+  const std::vector<int> taken = search.Forward(nullptr, nullptr);
+  const BaseFit without(study, training, {});
+  const BaseFit with(study, training, taken);
+  for (int i : fold) {
+    const LinearStudy::Posture& posture = study.postures[static_cast<std::size_t>(i)];
+    squares(i, 0) += std::pow(ErrorOf(posture, without.Residual(posture)), 2);
+    squares(i, 1) += std::pow(ErrorOf(posture, with.Residual(posture)), 2);
+  }
+}
+
+/// Judges the search as a whole by nested folds. One division into folds may happen to favour or to
+/// hide a cause: the errors of a posture are means over several.
 void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
                  const std::vector<int>& postures, const StudySums& all, CauseSearch& result) {
   Random random(options.seed);
   const int folds = std::min(options.folds, static_cast<int>(postures.size()));
   CauseSearchOptions inner = options;
   inner.deals = 1;
-  std::vector<double> gains;
-  double squares = 0.0, markers = 0.0;
-  for (const std::vector<int>& fold : Deal(postures, folds, random)) {
-    StudySums training = all;
-    for (int i : fold) training.Add(study.postures[static_cast<std::size_t>(i)], -1.0);
-    std::vector<int> rest;
-    std::vector<int> sorted = fold;
-    std::sort(sorted.begin(), sorted.end());
-    std::set_difference(postures.begin(), postures.end(), sorted.begin(), sorted.end(),
-                        std::back_inserter(rest));
-    Search search(study, inner, rest, training, options.seed + 1);
-    const std::vector<int> taken = search.Forward(nullptr, nullptr);
-    const BaseFit without(study, training, {});
-    const BaseFit with(study, training, taken);
-    for (int i : fold) {
-      const LinearStudy::Posture& posture = study.postures[static_cast<std::size_t>(i)];
-      if (posture.residual.size() == 0) continue;
-      const double error = ErrorOf(posture, with.Residual(posture));
-      gains.push_back(ErrorOf(posture, without.Residual(posture)) - error);
-      squares += posture.markers * error * error;
-      markers += posture.markers;
+  const int deals = std::clamp(kMostJudged / static_cast<int>(postures.size()), 1, kMostDeals);
+  Eigen::MatrixX2d squares =
+      Eigen::MatrixX2d::Zero(static_cast<Eigen::Index>(study.postures.size()), 2);
+  for (int deal = 0; deal < deals; ++deal) {
+    inner.seed = options.seed + 1 + static_cast<std::uint64_t>(deal);
+    for (const std::vector<int>& fold : Deal(postures, folds, random)) {
+      JudgeFold(study, inner, postures, all, fold, squares);
     }
   }
-  const Eigen::Map<const Eigen::ArrayXd> all_gains(gains.data(),
-                                                   static_cast<Eigen::Index>(gains.size()));
+  squares /= deals;
+  double sum = 0.0, markers = 0.0;
+  for (int i : postures) {
+    const double weight = study.postures[static_cast<std::size_t>(i)].markers;
+    sum += weight * squares(i, 1);
+    markers += weight;
+  }
+  const Eigen::MatrixX2d errors = squares(postures, Eigen::all).cwiseSqrt();
+  const Eigen::ArrayXd gains = errors.col(0) - errors.col(1);
   const auto count = static_cast<double>(gains.size());
-  result.nested_error = std::sqrt(squares / std::max(1.0, markers));
-  result.nested_gain = all_gains.mean();
+  result.nested_error = std::sqrt(sum / std::max(1.0, markers));
+  result.nested_gain = gains.mean();
   result.nested_gain_sd =
-      std::sqrt((all_gains - all_gains.mean()).square().sum() / std::max(1.0, count - 1.0) / count);
+      std::sqrt((gains - gains.mean()).square().sum() / std::max(1.0, count - 1.0) / count);
 }
 
 }  // namespace

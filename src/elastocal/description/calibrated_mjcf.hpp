@@ -26,7 +26,7 @@ namespace elastocal {
 /// - a body that is more than 0.1 mm or 0.1 mrad from where the nominal URDF has it, or on another
 ///   parent; an orientation that is not given by `quat`;
 /// - a joint about another axis, or not in the origin of its body;
-/// - angles of an unknown unit: no <compiler angle="..."> and no joint with the URDF's limits;
+/// - angles of an unknown unit: no `angle` of a `compiler` and no joint with the URDF's limits;
 /// - with springs, a keyframe of positions, or something with the name of a new joint or body.
 std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& source,
                                const RobotTree& nominal, const RobotTree& calibrated,

@@ -81,8 +81,9 @@ class Compensator {
   bool StartFrom(const Eigen::Ref<const Eigen::VectorXd>& command) noexcept;
 
   /// Limits the changes of commands along a motion (see Command) from one call to the next, by
-  /// coordinate, rad or m: the largest speed of a joint times the time between calls. The
-  /// correction relative to the plan changes by at most a tenth of that. A joint that the plan
+  /// coordinate, rad or m: the largest speed of a joint times the time between calls. A joint stays
+  /// between where it was and where the plan goes from there, or leaves that by at most a tenth of
+  /// the limit. A joint that the plan
   /// moves further moves as far as the plan does. (Where the plan jumps, see Command, only the
   /// limit itself holds.) A negative entry or NaN is no limit; an empty vector removes all limits.
   /// Returns false, and changes nothing, for another number of entries.

@@ -160,14 +160,16 @@ static inline void ec_hold_back(const ec_robot* robot, const double* nominal, co
   if (!held) return;
   for (c = 0; c < robot->coordinates; ++c) {
     const double most = ec_most_move(nominal, c, memory), last = memory->given[c];
-    const double beside = last + (nominal[c] - memory->last_q[c]);
+    const double planned = nominal[c] - memory->last_q[c];
     const double gentle = EC_GENTLE * memory->most_change[c];
+    const double low = last + (planned < 0.0 ? planned : 0.0) - gentle;
+    const double high = last + (planned > 0.0 ? planned : 0.0) + gentle;
     command[c] = memory->best_q[c];
     memory->lowest[c] = last - most;
     memory->highest[c] = last + most;
     if (!near) continue;
-    if (memory->lowest[c] < beside - gentle) memory->lowest[c] = beside - gentle;
-    if (memory->highest[c] > beside + gentle) memory->highest[c] = beside + gentle;
+    if (memory->lowest[c] < low) memory->lowest[c] = low;
+    if (memory->highest[c] > high) memory->highest[c] = high;
     if (memory->lowest[c] > command[c]) memory->lowest[c] = command[c];
     if (memory->highest[c] < command[c]) memory->highest[c] = command[c];
   }
