@@ -92,7 +92,9 @@ TEST_F(TiagoCauses, TenFoldsForetellTheErrorOfAnotherDay) {
 // of the first day do. With all rows, the apparent change is within the play of the joint.
 TEST_F(TiagoCauses, CheckKnowsTheScatterAndThePlayOfTheFirstDay) {
   const ScratchFolder scratch;
-  const Project project = ProjectWith("auto");
+  const Project project = ProjectWith(
+      "[arm_6_joint.hysteresis, arm_5_joint.hysteresis, "
+      "arm_1_joint.coupling_torso_lift_joint]");
   CalibrationRun run = CalibrateExperiment(project, {training_}, {.folds = 0});
   for (const auto& [name, text] : MakeCalibrationFiles(project, run)) scratch.Write(name, text);
   const std::filesystem::path all = SharedFile("data/tiago_mocap/validation.csv");
@@ -109,7 +111,7 @@ TEST_F(TiagoCauses, CheckKnowsTheScatterAndThePlayOfTheFirstDay) {
   ASSERT_EQ(many.check.moved.size(), 1u);
   const std::string joint = many.check.moved[0].joint;
   EXPECT_TRUE(std::ranges::any_of(many.warnings, [&](const std::string& text) {
-    return text.starts_with(joint + ": the calibration has hysteresis there, 0.77 degrees");
+    return text.starts_with(joint + ": the calibration has hysteresis there, 0.78 degrees");
   }));
 }
 
