@@ -144,12 +144,8 @@ function(elastocal_test name)
   add_executable(${name} ${joined})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} elastocal_test_support elastocal_warnings
     GTest::gtest_main)
-  # The libraries compute; more optimisation of a test's own code takes longer than it saves. (Static
-  # libraries would use the test's instances of templates.)
+  # The libraries compute; more optimisation of a test's own code takes longer than it saves.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
-  if(BUILD_SHARED_LIBS)
-    target_compile_options(${name} PRIVATE $<$<CONFIG:Debug>:-O0>)
-  endif()
   if(CMAKE_BUILD_TYPE STREQUAL Debug)
     set(cases)
     if(NOT ELASTOCAL_SLOW_TESTS)
