@@ -242,6 +242,34 @@ TEST_F(CalibratedTalos, InsignificantJointsAreNamedInEveryFile) {
   ExpectTheCalibratedRobot(ReadFile(scratch_.path() / "urdf"), {});
 }
 
+// A URDF has the geometry of a fit of its own, and a format that carries no causes has no gain of
+// them.
+TEST_F(CalibratedTalos, SignificanceIsThatOfWhatTheFormatCarries) {
+  for (auto& [name, value] : stored_.joint_errors) {
+    if (name.starts_with("arm_left_4_joint")) value = 0.0;
+  }
+  stored_.joint_errors["arm_left_4_joint.eccentricity_sin"] = 5e-3;
+  WriteCalibration(stored_);
+  const std::string file = (scratch_.path() / "out/calibration.yaml").string();
+  std::string geometry = "urdf:\n  model: rigid\n  errors:\n";
+  for (const auto& [name, value] : stored_.joint_errors) {
+    if (name.ends_with(".theta") && !name.starts_with("head_1_joint")) {
+      geometry += fmt::format("    {}: {:.17g}\n", name, value);
+    }
+  }
+  WriteFile(file, ReadFile(file) + geometry);
+  const auto names = [&](const std::string& format, const std::string& joint,
+                         const std::string& more = "") {
+    const std::string text = ReadFile(Export(format, "--min-significance 5 " + more));
+    return text.find(joint + " is nominal") != std::string::npos;
+  };
+  EXPECT_TRUE(names("urdf", "head_1_joint"));
+  EXPECT_FALSE(names("runtime", "head_1_joint"));
+  EXPECT_FALSE(names("runtime", "arm_left_4_joint"));
+  const std::string user = scratch_.Write("user.xml", UserModel{project_.tree}.Text(false));
+  EXPECT_TRUE(names("mjcf", "arm_left_4_joint", "--mjcf-springs --mjcf " + user));
+}
+
 TEST_F(CalibratedTalos, ExportsReplaceExportsAndNothingElse) {
   const std::string user = scratch_.Write("user.xml", UserModel{project_.tree}.Text(false));
   const std::string notes = ReadFile(project_.urdf);
@@ -268,65 +296,6 @@ TEST_F(Program, ExportsReplaceNoInputOfTheCalibration) {
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_NE(result.err.find("this is an input"), std::string::npos) << result.err;
   EXPECT_EQ(ReadFile(recording_), "Made by elastocal ");
-}
-
-TEST_F(Program, OnlyWhatHeldOutPosturesSayHelpsIsExported) {
-  // Only some joints have errors. The estimates of the others are noise.
-  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
-  truth[FindParameter(model_.parameters, "elbow_joint.theta")] = 0.01;
-  truth[FindParameter(model_.parameters, "turret_joint.alpha")] = -0.008;
-  WritePostureTable(recording_, MakeSyntheticRecording(model_, truth, {.postures = 40, .seed = 4}),
-                    arm_.tree);
-  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
-  const std::string file = (scratch_.path() / "arm.yaml").string();
-  const ProgramResult result =
-      RunProgram("export " + out_ + " --format pal --min-gain 0.03 -o " + file);
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.out.find("40 postures, each by an estimate without the fifth"),
-            std::string::npos)
-      << result.out;
-  const std::string text = ReadFile(file);
-  EXPECT_NE(text.find("# shoulder_joint is nominal"), std::string::npos) << text;
-  EXPECT_EQ(text.find("# elbow_joint is nominal"), std::string::npos) << text;
-  const YAML::Node pal = YAML::Load(text);
-  EXPECT_NEAR(pal["elbow_joint"]["offset"].as<double>(), 0.01, 1e-3);
-  EXPECT_EQ(pal["shoulder_joint"]["offset"].as<double>(), 0.0);
-  EXPECT_EQ(pal["shoulder_joint"]["roll"].as<double>(), 0.0);
-
-  EXPECT_EQ(RunProgram("export " + out_ + " --format pal --min-gain -1 -o " + file).exit_code, 2);
-  std::filesystem::remove(recording_);
-  const ProgramResult without =
-      RunProgram("export " + out_ + " --format pal --min-gain 0.03 -o " + file + "2");
-  EXPECT_EQ(without.exit_code, 3);
-  EXPECT_NE(without.err.find("is not there"), std::string::npos) << without.err;
-  EXPECT_FALSE(std::filesystem::exists(file + "2"));
-}
-
-// Only measured places of markers tell the zero of the last joint. Without them it is uncertain
-// together with these places, and has no gain.
-TEST_F(Program, AZeroThatMeasuredPlacesTellIsAGain) {
-  const std::string last = "flange_joint";
-  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model_.parameter_count());
-  truth[FindParameter(model_.parameters, last + ".theta")] = 0.02;
-  truth[FindParameter(model_.parameters, "elbow_joint.theta")] = 0.01;
-  WritePostureTable(recording_, MakeSyntheticRecording(model_, truth, {.postures = 40, .seed = 4}),
-                    arm_.tree);
-  std::vector<MarkerMeasurement> places;
-  for (const Marker& marker : model_.markers) {
-    places.push_back({marker.name, marker.p_link_marker, 0.1e-3});
-  }
-  const std::string table = scratch_.Write("places.csv", FormatMarkerPlaces(places));
-  const std::string file = (scratch_.path() / "arm.yaml").string();
-  for (const bool measured : {false, true}) {
-    const std::string more = measured ? " --marker-places " + table : "";
-    ASSERT_EQ(Calibrate(project_, recording_, kFewFolds + more).exit_code, 0);
-    const ProgramResult result =
-        RunProgram("export " + out_ + " --format pal --min-gain 0.03 -o " + file);
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    const YAML::Node pal = YAML::Load(ReadFile(file));
-    EXPECT_NEAR(pal["elbow_joint"]["offset"].as<double>(), 0.01, 2e-3);
-    EXPECT_NEAR(pal[last]["offset"].as<double>(), measured ? 0.02 : 0.0, 2e-3);
-  }
 }
 
 // With measured places, `validate` reveals a zero that no marker shows. `diagnose` uses the places

@@ -51,6 +51,15 @@ class ChangeWatch {
   Joints most_ = Joints::Zero();
 };
 
+/// The arm of ElasticArm, whose last joint counts turns and is displaced.
+RuntimeModel EndlessArm(double compliance, const ec_shift& shift) {
+  RuntimeModel model = ElasticArm(compliance);
+  model.lower[5] = -kInfinite;
+  model.upper[5] = kInfinite;
+  model.shifts.push_back(shift);
+  return model;
+}
+
 // Where torques begin or end, the loads jump. Without the limit, commands of these robots jump by
 // up to 0.2 rad.
 TEST(RuntimeChanges, LimitsHoldWhereLoadsComeFromElsewhere) {
@@ -120,10 +129,7 @@ TEST(RuntimeChanges, LimitsAreThoseOfEachJoint) {
 // With an error of its gear, the robot is not the same a turn further on: the commands beside such
 // a step are those of a motion that begins there.
 TEST(RuntimeChanges, AWholeTurnIsAMotionWhereAGearIsWrong) {
-  RuntimeModel model = ElasticArm(3e-4);
-  model.lower[5] = -kInfinite;
-  model.upper[5] = kInfinite;
-  model.shifts.push_back({5, EC_GEAR, 5, 5e-3, 0.0, 1.0});
+  const RuntimeModel model = EndlessArm(3e-4, {5, EC_GEAR, 5, 5e-3, 0.0, 1.0});
   Compensator robot(model), begun(model);
   Joints plan = (Joints() << 0.2, 0.6, -1.0, 0.2, 0.3, 3.1).finished();
   robot.Command(plan, kStatics, 0);
@@ -136,10 +142,7 @@ TEST(RuntimeChanges, AWholeTurnIsAMotionWhereAGearIsWrong) {
 // An endless joint goes from half a turn to minus half a turn, which is no motion. All commands are
 // as those of a plan that counts turns, and the joint stays on its side of the play.
 TEST(RuntimeChanges, AWholeTurnIsNoMotion) {
-  RuntimeModel model = ElasticArm(3e-4);
-  model.lower[5] = -kInfinite;
-  model.upper[5] = kInfinite;
-  model.shifts.push_back({5, EC_HYSTERESIS, 5, 2e-3, 0.0, 1.0});
+  RuntimeModel model = EndlessArm(3e-4, {5, EC_HYSTERESIS, 5, 2e-3, 0.0, 1.0});
   Compensator robot(model), counted(model);
   for (Compensator* one : {&robot, &counted}) one->LimitChanges(Joints::Constant(kMost));
   Joints plan = (Joints() << 0.2, 0.6, -1.0, 0.2, 0.3, 2.9).finished();

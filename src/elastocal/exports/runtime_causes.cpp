@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <vector>
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/robot/corrections.hpp"
@@ -65,32 +66,44 @@ bool IsAtRunTime(const Correction& correction) {
          ShiftFunction(correction.shape).has_value();
 }
 
-}  // namespace
+struct FoundCause {
+  Correction correction;
+  double size = 0.0;
+};
 
-void ApplyCauses(const RobotTree& tree, const StoredCalibration& calibration, RuntimeModel& model) {
+/// The corrections that a calibration has.
+std::vector<FoundCause> FoundCauses(const RobotTree& tree, const StoredCalibration& calibration) {
+  std::vector<FoundCause> causes;
   for (const Correction& correction : PossibleCorrections(tree, std::nullopt)) {
     const auto found = calibration.joint_errors.find(correction.name);
     if (found == calibration.joint_errors.end() || found->second == 0.0) continue;
+    causes.push_back({correction, found->second});
+  }
+  return causes;
+}
+
+}  // namespace
+
+void ApplyCauses(const RobotTree& tree, const StoredCalibration& calibration, RuntimeModel& model) {
+  for (const auto& [correction, size] : FoundCauses(tree, calibration)) {
     if (TargetOf(correction) == CorrectionTarget::kLoads) {
-      CorrectWeights(tree, correction, found->second, model);
+      CorrectWeights(tree, correction, size, model);
     }
     if (TargetOf(correction) == CorrectionTarget::kRoot) {
       const bool about_y = correction.shape == CorrectionShape::kSuspensionMy;
-      model.suspension[Size(correction.axis + (about_y ? 6 : 0))] = found->second;
+      model.suspension[Size(correction.axis + (about_y ? 6 : 0))] = size;
     }
     const auto function = ShiftFunction(correction.shape);
     if (!function) continue;
     model.shifts.push_back({correction.joint, *function,
-                            correction.source >= 0 ? correction.source : correction.joint,
-                            found->second, correction.centre, LoadScale(tree, correction)});
+                            correction.source >= 0 ? correction.source : correction.joint, size,
+                            correction.centre, LoadScale(tree, correction)});
   }
 }
 
 std::set<std::string> CausesAtRunTime(const RobotTree& tree, const StoredCalibration& calibration) {
   std::set<std::string> names;
-  for (const Correction& correction : PossibleCorrections(tree, std::nullopt)) {
-    const auto found = calibration.joint_errors.find(correction.name);
-    if (found == calibration.joint_errors.end() || found->second == 0.0) continue;
+  for (const auto& [correction, size] : FoundCauses(tree, calibration)) {
     if (IsAtRunTime(correction)) names.insert(correction.name);
   }
   return names;

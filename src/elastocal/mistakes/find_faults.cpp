@@ -168,6 +168,7 @@ class FaultsInTurn {
   const CalibrationResult& fit() const { return comparison_.largest(); }
 
   std::string OfSlides(const std::vector<RecordingFault>& faults) const {
+    if (faults.empty()) return "";
     return ScaleOfSlides(faults, project_.tree, EstimateCommonScale(fit(), project_.calibration));
   }
 

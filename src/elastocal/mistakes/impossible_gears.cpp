@@ -8,6 +8,7 @@
 
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/robot/coordinates.hpp"
+#include "elastocal/screening/gains_of_gears.hpp"
 
 namespace elastocal {
 
@@ -52,21 +53,11 @@ std::vector<RecordingFault> FindImpossibleGears(const CalibrationResult& result)
   // typically off by 0.3 %, as the ratio of a gear is.
   const double largest = LeastSize(FaultKind::kJointGain, false);
   constexpr double kCertain = 5.0;  // standard deviations beyond the largest error
-  std::vector<RecordingFault> faults;
-  for (int i = 0; i < result.model.parameter_count(); ++i) {
-    const Parameter& parameter = result.model.parameters[Size(i)];
-    if (parameter.correction < 0) continue;
-    const Correction& correction = result.model.elasticity.corrections[Size(parameter.correction)];
-    if (correction.shape != CorrectionShape::kGear) continue;
-    const Joint& joint = result.model.tree.joints[Size(correction.joint)];
-    const double ratio = result.delta[i];
-    if (std::abs(ratio) < largest + kCertain * result.sd[i]) continue;
-    RecordingFault fault;
-    fault.coordinate = joint.coordinate;
-    fault.size = 1.0 / (1.0 + ratio) - 1.0;
-    fault.sd = result.sd[i];
-    faults.push_back(fault);
-  }
+  std::vector<RecordingFault> faults = GainsOfGears(result);
+  std::erase_if(faults, [&](const RecordingFault& fault) {
+    const double error = fault.size / (1.0 + fault.size);  // of the gear, with the other sign
+    return std::abs(error) < largest + kCertain * fault.sd;
+  });
   return faults;
 }
 

@@ -82,7 +82,8 @@ bool IsElasticityOpen(const Project& project) {
   return !project.elasticity.torsion && !project.elasticity.bending;
 }
 
-/// The model with torsion in all joints; nothing where the robot has no masses.
+/// The model with torsion in all joints, and with the bending that it has; nothing where the robot
+/// has no masses.
 std::optional<ObservedRobot> WithTorsion(const ObservedRobot& rigid,
                                          const Observations& observations, const Project& project) {
   if (!HasMasses(project.tree)) return std::nullopt;
@@ -90,8 +91,9 @@ std::optional<ObservedRobot> WithTorsion(const ObservedRobot& rigid,
   for (std::size_t k = 0; k < project.tree.joints.size(); ++k) {
     joints.push_back(static_cast<int>(k));
   }
-  ObservedRobot elastic = MakeObservedRobot(project.tree, project.placement, rigid.setup, joints,
-                                            {}, rigid.robot.elasticity.corrections);
+  ObservedRobot elastic =
+      MakeObservedRobot(project.tree, project.placement, rigid.setup, joints,
+                        rigid.robot.elasticity.bending, rigid.robot.elasticity.corrections);
   KeepObservedUnknowns(observations, elastic);
   return elastic;
 }

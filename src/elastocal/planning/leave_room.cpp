@@ -8,11 +8,9 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/files/yaml_value.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/robot/moving_chain.hpp"
-#include "elastocal/tables/read_file.hpp"
 
 namespace elastocal {
 namespace {
@@ -85,19 +83,6 @@ Project LeaveRoom(Project project, double room_rad) {
   return Narrowed(std::move(project), room, WhereRestIsNear::kThrow);
 }
 
-Eigen::VectorXd OwnRoom(const Project& project) {
-  Eigen::VectorXd room = Eigen::VectorXd::Zero(project.tree.coordinate_count());
-  const YamlValue root = YamlValue::Parse(ReadFile(project.file), project.file.string());
-  const auto design = root.Find("design");
-  const auto section = design ? design->Find("room_deg") : std::nullopt;
-  if (!section) return room;
-  for (const auto& [name, value] : section->Entries()) {
-    const Joint& joint = project.tree.joints[Size(FindJoint(project.tree, name))];
-    room[joint.coordinate] = value.Bounded() * M_PI / 180.0;
-  }
-  return room;
-}
-
 Project LeavePossibleRoom(Project project, const Eigen::VectorXd& room_rad) {
   return Narrowed(std::move(project), room_rad, WhereRestIsNear::kLeaveLess);
 }
@@ -122,7 +107,7 @@ Project KeepRanges(Project project, const RobotTree& own) {
 Project WithRoom(Project project, const std::optional<double>& room_deg) {
   const RobotTree own = project.tree;
   if (room_deg) return KeepRanges(LeaveRoom(std::move(project), *room_deg * M_PI / 180.0), own);
-  const Eigen::VectorXd room = OwnRoom(project);
+  const Eigen::VectorXd room = project.motion.room;
   return KeepRanges(LeavePossibleRoom(std::move(project), room), own);
 }
 

@@ -14,10 +14,6 @@ namespace elastocal {
 /// Ranges of postures follow. Throws InputError where the posture of rest is then beyond a limit.
 Project LeaveRoom(Project project, double room_rad);
 
-/// The room that a project's file asks for (design.room_deg) by coordinate, rad; 0 where it does
-/// not.
-Eigen::VectorXd OwnRoom(const Project& project);
-
 /// As LeaveRoom, with a room for each coordinate. A joint that rests near its limit leaves as much
 /// as its posture of rest allows, and nothing is thrown.
 Project LeavePossibleRoom(Project project, const Eigen::VectorXd& room_rad);
@@ -28,7 +24,7 @@ Project LeavePossibleRoom(Project project, const Eigen::VectorXd& room_rad);
 Project KeepRanges(Project project, const RobotTree& own);
 
 /// LeaveRoom with the room of the command line, deg, where it is given, and else LeavePossibleRoom
-/// with that of the project; then KeepRanges.
+/// with that of the project (MotionSetup::room); then KeepRanges.
 Project WithRoom(Project project, const std::optional<double>& room_deg);
 
 }  // namespace elastocal

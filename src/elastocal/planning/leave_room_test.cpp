@@ -57,13 +57,13 @@ TEST(LeaveRoom, WhereAJointRestsNearItsLimitLessIsLeft) {
 // A project says how much room its robot needs; the command line says otherwise.
 TEST(LeaveRoom, AProjectAsksForIt) {
   const std::filesystem::path talos = SourceFile("models/talos/project.yaml");
-  EXPECT_EQ(OwnRoom(ReadProject(talos)).maxCoeff(), 0.0);
+  EXPECT_EQ(ReadProject(talos).motion.room.maxCoeff(), 0.0);
   const ScratchFolder folder;
   std::filesystem::copy_file(talos.parent_path() / "talos.urdf", folder.path() / "talos.urdf");
   std::string text = ReadFile(talos);
   text.insert(text.find("  rest_deg:"), "  room_deg: {leg_left_2_joint: 5}\n");
   const Project project = ReadProject(folder.Write("project.yaml", text));
-  EXPECT_NEAR(OwnRoom(project).sum(), 5.0 * kOneDeg, 1e-12);
+  EXPECT_NEAR(project.motion.room.sum(), 5.0 * kOneDeg, 1e-12);
   const auto lower = [&](const std::optional<double>& given) {
     const RobotTree tree = WithRoom(project, given).tree;
     return tree.joints[static_cast<std::size_t>(FindJoint(tree, "leg_left_2_joint"))].limits.lower;

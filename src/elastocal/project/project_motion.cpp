@@ -80,10 +80,12 @@ ChainSetup ReadChainSetup(const YamlValue& value, const Project& project) {
 /// where it belongs (Dexterity).
 constexpr double kDexterityShare = 0.5;
 
-/// Sets the limits of all joints (PostureRange), with a share of the range left free at either end.
+/// Sets the limits of all joints (PostureRange), with a share of the range left free at either end,
+/// and no room for corrections.
 void SetLimits(const RobotTree& tree, double margin, MotionSetup& motion) {
   motion.lower.resize(tree.coordinate_count());
   motion.upper.resize(tree.coordinate_count());
+  motion.room.setZero(tree.coordinate_count());
   for (int i = 0; i < tree.coordinate_count(); ++i) {
     std::tie(motion.lower[i], motion.upper[i]) =
         PostureRange(tree.joints[tree.coordinate_joint[i]], margin);
@@ -223,10 +225,9 @@ void ReadDesign(const YamlValue& section, Project& project) {
   if (const auto ranges = section.Find("range_deg"))
     ReadRanges(*ranges, project.tree, limit_margin, motion);
   if (const auto room = section.Find("room_deg")) {
-    // Checked here; design and plan read it (OwnRoom in planning/leave_room.hpp).
     for (const auto& [name, value] : room->Entries()) {
-      DriverNamedBy(name, value, project.tree);
-      value.Bounded();
+      const Joint& joint = project.tree.joints[DriverNamedBy(name, value, project.tree)];
+      motion.room[joint.coordinate] = kOneDegree * value.Bounded();
     }
   }
   section.ReadBounded("effort_share", motion.effort_share);

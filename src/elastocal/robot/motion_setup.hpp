@@ -42,7 +42,9 @@ struct ChainSetup {
 struct MotionSetup {
   Eigen::VectorXd rest;          ///< posture of rest, by coordinate of q; within the limits
   Eigen::VectorXd lower, upper;  ///< limits with a margin, by coordinate, rad or m
-  double effort_share = 1.0;     ///< share of the URDF's largest torques that may be used, eq. 9
+  Eigen::VectorXd
+      room;  ///< left free at a revolute joint's limits for corrections, by coordinate, rad
+  double effort_share = 1.0;  ///< share of the URDF's largest torques that may be used, eq. 9
   double motion_effort_share = 0.9;  ///< the same for planned motions, whose joints accelerate
   double sphere_margin = 0.0;        ///< least distance between spheres, m
   std::vector<CollisionSphere> spheres;

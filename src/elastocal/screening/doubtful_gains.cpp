@@ -11,36 +11,20 @@
 #include "elastocal/robot/coordinates.hpp"
 #include "elastocal/robot/linkage.hpp"
 #include "elastocal/robot/move_motors.hpp"
+#include "elastocal/screening/gains_of_gears.hpp"
 #include "elastocal/screening/measured_faults.hpp"
 
 namespace elastocal {
-namespace {
-
-/// The gains that a fit describes as errors of gears and leads.
-std::vector<RecordingFault> GainsOfGears(const CalibrationResult& result) {
-  std::vector<RecordingFault> gains;
-  for (int i = 0; i < result.model.parameter_count(); ++i) {
-    const Parameter& parameter = result.model.parameters[Size(i)];
-    if (parameter.correction < 0) continue;
-    const Correction& correction = result.model.elasticity.corrections[Size(parameter.correction)];
-    if (correction.shape != CorrectionShape::kGear) continue;
-    if (IsMovedByRods(result.model.tree, correction.joint)) continue;
-    const double ratio = result.delta[i];
-    gains.push_back({.coordinate = result.model.tree.joints[Size(correction.joint)].coordinate,
-                     .size = 1.0 / (1.0 + ratio) - 1.0,
-                     .sd = result.sd[i]});
-  }
-  return gains;
-}
-
-}  // namespace
-
 std::vector<RecordingFault> FindDoubtfulGains(const CalibrationResult& result,
                                               const Recording& recording,
                                               const CalibrationOptions& options) {
   constexpr double kOneInFifty = 0.02;
   const RobotTree& tree = result.model.tree;
   std::vector<RecordingFault> gains = GainsOfGears(result);
+  const auto moved_by_rods = [&](const RecordingFault& gear) {
+    return IsMovedByRods(tree, tree.coordinate_joint[Size(gear.coordinate)]);
+  };
+  std::erase_if(gains, moved_by_rods);
   std::set<int> coordinates;
   for (const int joint : result.model.active_joints) {
     if (!IsMovedByRods(tree, joint)) coordinates.insert(tree.joints[Size(joint)].coordinate);

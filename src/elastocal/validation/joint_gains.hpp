@@ -49,8 +49,8 @@ struct GainOptions {
   double least = 0.0;      ///< a joint that gains no more than this returns to nominal, m
   bool with_loads = true;  ///< what is deployed compensates compliances; if false: geometry alone
   std::set<std::string> nominal = {};  ///< joints and legs that are nominal whatever they gain
-  std::set<std::string> causes =
-      {};  ///< names of the corrections that are deployed (corrections.hpp)
+  /// Names of the corrections that are deployed (corrections.hpp).
+  std::set<std::string> causes = {};
   /// Markers whose positions are known beside the recording: they stay where the estimate has them.
   std::set<std::string> known_markers = {};
 };
