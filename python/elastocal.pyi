@@ -457,6 +457,16 @@ class Runtime:
     def forget(self) -> None:
         """Lets the next command be found by itself, and forgets the last input. Commands near the last one go on from
         it, as along a motion."""
+    def start_from(self, command: _Positions) -> None:
+        """Begins a motion from the command at which the drives are, q as in 'command': limit_changes holds from the
+        next command on."""
+    def limit_changes(self, most: ArrayLike) -> None:
+        """Limits the change of a command from one call to the next, (joints,), rad or m: the largest speed times the
+        time between calls. A joint that the plan moves further moves as far as the plan. Negative or NaN: no limit;
+        empty: none at all."""
+    def ease_changes(self, calls: float) -> None:
+        """Lets a correction take so many calls to reach its largest speed, a tenth of that of limit_changes, and as
+        many to brake. 0: corrections are given at once."""
     def forward(self, q: _Positions, torque: ArrayLike = ..., feet: int = 0) -> dict[str, Any]:
         """Poses (4, 4) in m of all 'links' in the root link's frame, with deflection, of the 'root', and the
         'status'. q: (joints,), rad or m, or a dict of joints, the others being at 0. torque: (all joints of the

@@ -43,6 +43,21 @@ class PyRuntime {
 
   void Forget() { compensator_.Forget(); }
 
+  void StartFrom(const py::object& command) {
+    if (!compensator_.StartFrom(Positions(command))) {
+      throw InputError("command: finite positions were expected");
+    }
+  }
+
+  void LimitChanges(const Eigen::VectorXd& most) {
+    if (!compensator_.LimitChanges(most)) {
+      throw InputError("most: " + std::to_string(most.size()) + " limits; none or " +
+                       std::to_string(model().coordinate_names.size()) + " were expected");
+    }
+  }
+
+  void EaseChanges(double calls) { compensator_.EaseChanges(calls); }
+
   const Compensator& compensator() const { return compensator_; }
 
   std::string Status() const { return DescribeStatus(status_); }
@@ -129,6 +144,16 @@ void AddRuntime(py::module_& module) {
           "forget", &PyRuntime::Forget,
           "Lets the next command be found by itself, and forgets the last input. Commands near the "
           "last one go on from it, as along a motion.")
+      .def("start_from", &PyRuntime::StartFrom, "command"_a,
+           "Begins a motion from the command at which the drives are, q as in 'command': "
+           "limit_changes holds from the next command on.")
+      .def("limit_changes", &PyRuntime::LimitChanges, "most"_a,
+           "Limits the change of a command from one call to the next, (joints,), rad or m: the "
+           "largest speed times the time between calls. A joint that the plan moves further moves "
+           "as far as the plan. Negative or NaN: no limit; empty: none at all.")
+      .def("ease_changes", &PyRuntime::EaseChanges, "calls"_a,
+           "Lets a correction take so many calls to reach its largest speed, a tenth of that of "
+           "limit_changes, and as many to brake. 0: corrections are given at once.")
       .def("forward", &PyRuntime::Forward, "q"_a, "torque"_a = none, "feet"_a = 0u,
            with_arguments("Poses (4, 4) in m of all 'links' in the root link's frame, with "
                           "deflection, of the 'root', and the 'status'.")

@@ -121,6 +121,17 @@ class LeftArm(ScratchCase):
         np.testing.assert_allclose(nominal_at, self.project.robot.poses(bent)[tip], atol=1e-9)
         with self.assertRaises(elastocal.InputError):
             real.forward(np.zeros(3))
+        # A motion begins where the drives are, and goes on within the limits.
+        real.limit_changes(np.full(len(real.joints), 2e-3))
+        real.start_from(q)
+        self.assertLessEqual(np.abs(real.command(q) - q).max(), 2e-3 + 1e-12)
+        real.limit_changes([])
+        self.assertGreater(np.abs(real.command(q) - q).max(), 4e-3)
+        real.ease_changes(10)
+        with self.assertRaisesRegex(elastocal.InputError, "most: 3 limits; none or"):
+            real.limit_changes(np.zeros(3))
+        with self.assertRaisesRegex(elastocal.InputError, "command: finite positions"):
+            real.start_from(np.full(len(real.joints), np.nan))
         for wrong in ("x", [[1, 2], [3]], object()):
             with self.assertRaisesRegex(TypeError, "q: an array of .* positions, or a dict of joints was expected"):
                 real.forward(wrong)

@@ -146,11 +146,27 @@ TEST(RuntimeInput, PosesWithoutAPostureGiveNoCorrection) {
     EXPECT_EQ(robot.Command(Six::Constant(kNan), kNone, 0),
               unsigned{EC_BAD_POSITION} | EC_NOTHING_YET);
   }
-  // With good positions, the nominal robot's pose replaces one that is not finite.
-  Compensator robot(ElasticArm()), plain(ElasticArm());
-  EXPECT_EQ(robot.Command(&target, kPlan, kNone, 0), unsigned{EC_BAD_POSITION});
+}
+
+// With good positions, the nominal robot's pose replaces one that is none.
+TEST(RuntimeInput, APoseMustBeFiniteAndARotation) {
+  Compensator plain(ElasticArm());
   plain.Command(kPlan, kNone, 0);
-  EXPECT_TRUE(robot.command() == plain.command());
+  plain.Forward(plain.command(), kNone, 0);
+  const Eigen::Isometry3d there = plain.link_pose(0);
+  Eigen::Isometry3d nowhere = there, scaled = there, mirrored = there, sheared = there;
+  nowhere.translation()[0] = kNan;
+  scaled.linear() *= 1.01;
+  mirrored.linear().col(2) *= -1.0;
+  sheared.linear().col(0) += 0.01 * there.linear().col(1);
+  for (const Eigen::Isometry3d& target : {nowhere, scaled, mirrored, sheared}) {
+    Compensator robot(ElasticArm());
+    EXPECT_EQ(robot.Command(&target, kPlan, kNone, 0), unsigned{EC_BAD_POSITION});
+    EXPECT_TRUE(robot.command() == plain.command());
+  }
+  Eigen::Isometry3d rounded = there;  // five digits
+  rounded.linear() = (1e5 * there.linear()).array().round() / 1e5;
+  EXPECT_EQ(Compensator(ElasticArm()).Command(&rounded, kPlan, kNone, 0), unsigned{EC_FINE});
 }
 
 }  // namespace

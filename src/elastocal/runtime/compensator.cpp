@@ -56,7 +56,9 @@ void CheckOptions(const CompensatorOptions& options) {
 
 std::string DescribeStatus(CompensatorStatus status) {
   constexpr std::pair<CompensatorStatus, const char*> kTexts[] = {
-      {EC_BAD_POSITION, "positions that are not finite, or too few: the last good ones were used"},
+      {EC_BAD_POSITION,
+       "positions that are not finite, or too few: the last good ones were used (of wanted poses: "
+       "those of the nominal robot)"},
       {EC_BAD_TORQUE,
        "torques that are not finite, or of a wrong number: the last good ones were used, or those "
        "of "

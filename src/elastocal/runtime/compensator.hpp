@@ -83,10 +83,10 @@ class Compensator {
   /// Limits the changes of commands along a motion (see Command) from one call to the next, by
   /// coordinate, rad or m: the largest speed of a joint times the time between calls. A joint stays
   /// between where it was and where the plan goes from there, or leaves that by at most a tenth of
-  /// the limit. A joint that the plan
-  /// moves further moves as far as the plan does. (Where the plan jumps, see Command, only the
-  /// limit itself holds.) A negative entry or NaN is no limit; an empty vector removes all limits.
-  /// Returns false, and changes nothing, for another number of entries.
+  /// the limit. A joint that the plan moves further moves as far as the plan does. (Where the plan
+  /// jumps, see Command, only the limit itself holds.) A negative entry or NaN is no limit; an
+  /// empty vector removes all limits. Returns false, and changes nothing, for another number of
+  /// entries.
   bool LimitChanges(const Eigen::Ref<const Eigen::VectorXd>& most) noexcept;
 
   /// Eases the corrections along a motion. A correction takes `calls` calls to reach its largest
@@ -130,7 +130,8 @@ class Compensator {
 
   /// As above, for wanted poses of the ends of limbs in the root link's frame, by tip of the model
   /// (array of tip_names.size()). `nominal` is a posture nearby, to which redundant joints stay
-  /// close.
+  /// close. Where a pose is not finite, or its matrix no rotation (to 1e-3), the status is
+  /// EC_BAD_POSITION and the command that for `nominal`.
   CompensatorStatus Command(const Eigen::Isometry3d* T_root_tip,
                             const Eigen::Ref<const Eigen::VectorXd>& nominal,
                             const Eigen::Ref<const Eigen::VectorXd>& torque,

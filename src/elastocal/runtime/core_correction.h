@@ -156,12 +156,26 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
   return status;
 }
 
-/* Whether all poses of the ends of limbs are finite. */
+/* Whether rows of a finite matrix are the axes of a right-handed frame: to 1e-3, so that numbers of
+   few digits pass. */
+static inline int ec_is_rotation(const double* R) {
+  const double most = 1e-3;
+  double third[3];
+  int i, good;
+  ec_cross(R, R + 3, third);
+  good = fabs(ec_dot(R, R) - 1.0) <= most && fabs(ec_dot(R + 3, R + 3) - 1.0) <= most &&
+         fabs(ec_dot(R, R + 3)) <= most;
+  for (i = 0; i < 3; ++i) good = good && fabs(third[i] - R[6 + i]) <= most;
+  return good;
+}
+
+/* Whether all poses of the ends of limbs are finite, and poses. */
 static inline int ec_are_sane(const ec_robot* robot, const ec_pose* targets) {
   int t, i, good = 1;
   for (t = 0; t < robot->tips; ++t) {
     for (i = 0; i < 9; ++i) good = good && ec_is_sane(targets[t].R[i]);
     for (i = 0; i < 3; ++i) good = good && ec_is_sane(targets[t].p[i]);
+    good = good && ec_is_rotation(targets[t].R);
   }
   return good;
 }
@@ -203,8 +217,8 @@ static inline unsigned ec_command(const ec_robot* robot, const double* nominal,
 }
 
 /* The same for poses of the ends of the limbs in the root link's frame, by tip; `nominal` is the
-   posture nearby from which redundant joints do not stray. A pose that is not finite is a bad
-   position: the nominal robot's poses are taken. */
+   posture nearby from which redundant joints do not stray. A pose that is not finite, or whose
+   matrix is no rotation, is a bad position: the nominal robot's poses are taken. */
 static inline unsigned ec_command_poses(const ec_robot* robot, const ec_pose* targets,
                                         const double* nominal, const double* torque,
                                         unsigned support, ec_memory* memory, double* command,
