@@ -217,7 +217,10 @@ nlohmann::ordered_json ContactJson(const ContactRun& run) {
     json["kfold"] = FiguresJson(run.model, run.calibrated.held_out.figures);
     json["kfold"]["folds"] = run.calibrated.held_out.folds;
     json["kfold"]["decided_once"] = Json::array();
-    if (run.causes && !run.extra.empty()) json["kfold"]["decided_once"].push_back("causes");
+    if (run.without_causes) {
+      json["kfold"]["decided_once"].push_back("causes");
+      json["kfold"]["without_causes"] = FiguresJson(run.model, *run.without_causes);
+    }
     json["kfold"]["uncalibrated"] = FiguresJson(run.model, run.uncalibrated.held_out.figures);
     json["kfold"]["of_touches"] = ObservationList(run, true);
     if (!run.touches_only()) json["kfold"]["of_others"] = ObservationList(run, false);

@@ -143,6 +143,7 @@ void TakeCauses(const Project& project, const ContactRunOptions& options, int fo
       ChooseObservedCauses(project, run.model, run.observations, run.calibrated.estimate.fit);
   run.causes = std::move(causes.report);
   run.extra = std::move(causes.extra);
+  run.without_causes.reset();
   if (run.extra.empty()) return;
   if (run.causes && !FindObservedFault(run.model, run.observations, run.calibrated.estimate.fit)
                          .empty()) {  // a mistake in the table: no cause may hide it
@@ -163,6 +164,7 @@ void TakeCauses(const Project& project, const ContactRunOptions& options, int fo
     run.causes->search.accepted = false;
     return;
   }
+  if (run.causes) run.without_causes = ContactRun::Judged(run.calibrated);
   Take(std::move(with), std::move(outcome), run);
 }
 

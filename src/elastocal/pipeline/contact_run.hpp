@@ -64,6 +64,8 @@ struct ContactRun {
   ContactOutcome calibrated;
   std::vector<std::string> extra;  ///< causes beyond geometry and springs that the model contains
   std::optional<CauseReport> causes;  ///< the study by which they were chosen, if there was one
+  /// Where all postures chose causes: the errors (Judged) of the model without them.
+  std::optional<ObservationFigures> without_causes;
   /// Where joints are elastic or there are such causes: a fit without them. The URDF has its
   /// geometry, because a URDF has no place for springs and causes.
   std::optional<ContactOutcome> geometric;

@@ -65,6 +65,19 @@ void AddUrdfAlone(ContactRun& run, const std::string& on) {
                   FiguresInWords(run, ContactRun::Judged(*run.geometric)), on));
 }
 
+/// The causes were chosen by all postures. Adds what is honest of a choice that has not seen a
+/// posture.
+void AddWithoutCauses(ContactRun& run, const std::string& on) {
+  const CauseSearch& search = run.causes->search;
+  run.verdict.remarks.push_back(
+      fmt::format("causes beyond geometry and springs were chosen by all {}, which flatters these "
+                  "figures: without them the robot leaves {} {}, and causes that were chosen "
+                  "without a posture take its error from {:.3f} to {:.3f} standard deviations of "
+                  "noise",
+                  ThingsOf(run), FiguresInWords(run, *run.without_causes), on, search.error,
+                  search.nested_error));
+}
+
 /// Ratio of a tag's size in the left-out images to its size in the project; 1 for what is no tag.
 double SizeInImages(const ContactRun& run, const std::vector<ObservationOutlier>& left_out) {
   std::vector<double> ratios;
@@ -230,6 +243,7 @@ void JudgeContacts(ContactRun& run) {
                               " was left out (--kfold 0): nothing was validated");
   }
   if (run.geometric) AddUrdfAlone(run, on);
+  if (held_out && run.without_causes) AddWithoutCauses(run, on);
   if (run.calibrated.held_out.unsettled > 0) {
     verdict.remarks.push_back(fmt::format("{} of {} folds have not converged",
                                           run.calibrated.held_out.unsettled,
