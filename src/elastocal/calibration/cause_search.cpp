@@ -45,6 +45,16 @@ std::vector<std::vector<int>> Deal(std::vector<int> postures, int folds, Random&
   return dealt;
 }
 
+struct Mean {
+  double mean = 0.0, variance = 0.0;  ///< and the variance of the mean
+};
+
+Mean MeanOf(const Eigen::ArrayXd& values) {
+  const auto count = static_cast<double>(values.size());
+  const double mean = values.mean();
+  return {mean, (values - mean).square().sum() / std::max(1.0, count - 1.0) / count};
+}
+
 /// Forward search for causes over some of the postures.
 class Search {
  public:
@@ -277,13 +287,11 @@ class Search {
     };
     error_ = rms(0);
     const Eigen::MatrixXd errors = squares(postures_, Eigen::all).cwiseSqrt();
-    const auto count = static_cast<double>(postures_.size());
     for (std::size_t k = 0; k < findings.size(); ++k) {
-      const Eigen::ArrayXd gains = errors.col(0) - errors.col(static_cast<Eigen::Index>(k) + 1);
+      const Mean gain = MeanOf(errors.col(0) - errors.col(static_cast<Eigen::Index>(k) + 1));
       findings[k].gain = error_ - rms(static_cast<Eigen::Index>(k) + 1);
-      findings[k].mean_gain = gains.mean();
-      findings[k].gain_sd =
-          std::sqrt((gains - gains.mean()).square().sum() / std::max(1.0, count - 1.0) / count);
+      findings[k].mean_gain = gain.mean;
+      findings[k].gain_sd = std::sqrt(gain.variance);
     }
   }
 
@@ -297,6 +305,13 @@ class Search {
   std::vector<Eigen::VectorXd> left_;    // by posture
   double error_ = 0.0;
 };
+
+/// By how much the errors of postures fall, from the squares of errors without causes and with
+/// them.
+Eigen::ArrayXd GainsOf(const Eigen::MatrixX2d& squares, const std::vector<int>& postures) {
+  const Eigen::MatrixX2d errors = squares(postures, Eigen::all).cwiseSqrt();
+  return errors.col(0) - errors.col(1);
+}
 
 /// Repeats the search without a fold and judges its choice on that fold: adds the squared errors of
 /// its postures without causes and with those that were chosen.
@@ -321,7 +336,8 @@ void JudgeFold(const LinearStudy& study, const CauseSearchOptions& options,
 }
 
 /// Judges the search as a whole by nested folds. One division into folds may happen to favour or to
-/// hide a cause: the errors of a posture are means over several.
+/// hide a cause: the errors of a posture are means over several. The standard error of the gain is
+/// that of one division, because divisions of the same postures are not independent.
 void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
                  const std::vector<int>& postures, const StudySums& all, CauseSearch& result) {
   Random random(options.seed);
@@ -329,28 +345,27 @@ void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
   CauseSearchOptions inner = options;
   inner.deals = 1;
   const int deals = std::clamp(kMostJudged / static_cast<int>(postures.size()), 1, kMostDeals);
-  Eigen::MatrixX2d squares =
-      Eigen::MatrixX2d::Zero(static_cast<Eigen::Index>(study.postures.size()), 2);
+  const auto rows = static_cast<Eigen::Index>(study.postures.size());
+  Eigen::MatrixX2d squares = Eigen::MatrixX2d::Zero(rows, 2);
+  double variance = 0.0;
   for (int deal = 0; deal < deals; ++deal) {
     inner.seed = options.seed + 1 + static_cast<std::uint64_t>(deal);
+    Eigen::MatrixX2d of_deal = Eigen::MatrixX2d::Zero(rows, 2);
     for (const std::vector<int>& fold : Deal(postures, folds, random)) {
-      JudgeFold(study, inner, postures, all, fold, squares);
+      JudgeFold(study, inner, postures, all, fold, of_deal);
     }
+    squares += of_deal / deals;
+    variance += MeanOf(GainsOf(of_deal, postures)).variance / deals;
   }
-  squares /= deals;
   double sum = 0.0, markers = 0.0;
   for (int i : postures) {
     const double weight = study.postures[static_cast<std::size_t>(i)].markers;
     sum += weight * squares(i, 1);
     markers += weight;
   }
-  const Eigen::MatrixX2d errors = squares(postures, Eigen::all).cwiseSqrt();
-  const Eigen::ArrayXd gains = errors.col(0) - errors.col(1);
-  const auto count = static_cast<double>(gains.size());
   result.nested_error = std::sqrt(sum / std::max(1.0, markers));
-  result.nested_gain = gains.mean();
-  result.nested_gain_sd =
-      std::sqrt((gains - gains.mean()).square().sum() / std::max(1.0, count - 1.0) / count);
+  result.nested_gain = MeanOf(GainsOf(squares, postures)).mean;
+  result.nested_gain_sd = std::sqrt(variance);
 }
 
 }  // namespace

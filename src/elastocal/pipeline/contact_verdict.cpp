@@ -57,6 +57,10 @@ std::vector<std::string> WidePriors(const ContactRun& run) {
   return wide;
 }
 
+const char* ThingsOf(const ContactRun& run) {
+  return run.touches_only() ? "touches" : "observations";
+}
+
 /// Adds the errors of the URDF alone, which has neither springs nor causes, beside those of the
 /// whole model.
 void AddUrdfAlone(ContactRun& run, const std::string& on) {
@@ -169,10 +173,6 @@ std::string CompensationOf(const ContactRun& run) {
 }
 
 namespace {
-
-const char* ThingsOf(const ContactRun& run) {
-  return run.touches_only() ? "touches" : "observations";
-}
 
 /// Judges whether the fit explains its own data.
 void JudgeFit(ContactRun& run) {
