@@ -45,11 +45,11 @@ std::vector<std::vector<int>> Deal(std::vector<int> postures, int folds, Random&
   return dealt;
 }
 
-struct Mean {
+struct MeanGain {
   double mean = 0.0, variance = 0.0;  ///< and the variance of the mean
 };
 
-Mean MeanOf(const Eigen::ArrayXd& values) {
+MeanGain MeanOf(const Eigen::ArrayXd& values) {
   const auto count = static_cast<double>(values.size());
   const double mean = values.mean();
   return {mean, (values - mean).square().sum() / std::max(1.0, count - 1.0) / count};
@@ -288,7 +288,7 @@ class Search {
     error_ = rms(0);
     const Eigen::MatrixXd errors = squares(postures_, Eigen::all).cwiseSqrt();
     for (std::size_t k = 0; k < findings.size(); ++k) {
-      const Mean gain = MeanOf(errors.col(0) - errors.col(static_cast<Eigen::Index>(k) + 1));
+      const MeanGain gain = MeanOf(errors.col(0) - errors.col(static_cast<Eigen::Index>(k) + 1));
       findings[k].gain = error_ - rms(static_cast<Eigen::Index>(k) + 1);
       findings[k].mean_gain = gain.mean;
       findings[k].gain_sd = std::sqrt(gain.variance);
@@ -357,13 +357,15 @@ void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
     squares += of_deal / deals;
     variance += MeanOf(GainsOf(of_deal, postures)).variance / deals;
   }
-  double sum = 0.0, markers = 0.0;
+  Eigen::RowVector2d sums = Eigen::RowVector2d::Zero();
+  double markers = 0.0;
   for (int i : postures) {
     const double weight = study.postures[static_cast<std::size_t>(i)].markers;
-    sum += weight * squares(i, 1);
+    sums += weight * squares.row(i);
     markers += weight;
   }
-  result.nested_error = std::sqrt(sum / std::max(1.0, markers));
+  result.error = std::sqrt(sums[0] / std::max(1.0, markers));
+  result.nested_error = std::sqrt(sums[1] / std::max(1.0, markers));
   result.nested_gain = MeanOf(GainsOf(squares, postures)).mean;
   result.nested_gain_sd = std::sqrt(variance);
 }
