@@ -17,6 +17,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/measurement/thinned_motions.hpp"
+#include "elastocal/robot/zero_offset.hpp"
 
 namespace elastocal {
 namespace {
@@ -30,12 +31,11 @@ constexpr int kFewestMoments = 30;  // of them in each group, whose noise they t
 constexpr int kMedianUpdates = 8;   // of the noise at most, once a part has told it
 constexpr int kLastUpdates = 3;     // of the noise without outliers
 
-bool IsEstimated(ParameterKind parameter, ModelKind kind) {
-  if (IsExternal(parameter)) return true;
-  if (IsElastic(parameter)) return kind == ModelKind::kFull;
+bool IsEstimated(const Parameter& parameter, const RobotTree& tree, ModelKind kind) {
+  if (IsExternal(parameter.kind)) return true;
+  if (IsElastic(parameter.kind)) return kind == ModelKind::kFull;
   return kind == ModelKind::kGeometric || kind == ModelKind::kFull ||
-         (kind == ModelKind::kOffsetsOnly &&
-          (parameter == ParameterKind::kTheta || parameter == ParameterKind::kMotorZero));
+         (kind == ModelKind::kOffsetsOnly && IsZeroOffset(parameter, tree));
 }
 
 /// Parameters that are estimated: all of the kind that are not held, also those that cannot be told
@@ -46,9 +46,9 @@ std::vector<int> OfKind(const ErrorModel& model, const BaseParameters& base, Mod
   std::vector<int> free;
   for (int i = 0; i < model.parameter_count(); ++i) {
     if (std::binary_search(base.held.begin(), base.held.end(), i)) continue;
-    const ParameterKind parameter = model.parameters[i].kind;
-    if (waist_moves && parameter == ParameterKind::kWaistPose) continue;
-    if (IsEstimated(parameter, kind)) free.push_back(i);
+    const Parameter& parameter = model.parameters[i];
+    if (waist_moves && parameter.kind == ParameterKind::kWaistPose) continue;
+    if (IsEstimated(parameter, model.tree, kind)) free.push_back(i);
   }
   return free;
 }

@@ -48,6 +48,16 @@ std::vector<int> JointsBeyondTrunk(const RobotTree& tree, const Limb& limb) {
   return {begin, limb.joints.end()};
 }
 
+/// The robot with motors that carry these loads, for its prior: an effort that is less is no figure
+/// of the motor (a placeholder, or that before a gear), and would make its joint as soft.
+RobotTree WithAbleMotors(RobotTree tree, const JointLoads& loads) {
+  for (std::size_t k = 0; k < tree.joints.size(); ++k) {
+    double& effort = tree.joints[k].limits.effort;
+    if (effort > 0.0) effort = std::max(effort, std::abs(loads(2, static_cast<Eigen::Index>(k))));
+  }
+  return tree;
+}
+
 using Effects = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /// Effects of the errors on each link, a column for each error at one standard deviation of the
@@ -63,15 +73,17 @@ std::vector<Effects> ErrorEffects(const RobotTree& tree, const std::vector<int>&
   const ErrorModel model = MakeErrorModel(tree, std::move(origins), {}, elasticity);
   const Geometry geometry = ApplyErrors(model, Eigen::VectorXd::Zero(model.parameter_count()));
   GeneralizedJacobian jacobian(model);
-  jacobian.Evaluate(geometry, q, GravityLoads(model, geometry, q, kGravity, fixed_link));
+  const JointLoads loads = GravityLoads(model, geometry, q, kGravity, fixed_link);
+  jacobian.Evaluate(geometry, q, loads);
   const Prior prior;
+  const RobotTree able = WithAbleMotors(tree, loads);
   std::vector<Effects> effects;
   for (int i = 0; i < model.marker_count(); ++i) {
     effects.emplace_back(Effects::Zero(6, model.parameter_count()));
     for (const int column : jacobian.Columns(i)) {
       const Parameter& parameter = model.parameters[Size(column)];
       if (parameter.joint < 0) continue;  // where the robot is, and the point itself
-      const Vector6d screw = prior.Of(tree, parameter) * jacobian.Screw(column);
+      const Vector6d screw = prior.Of(able, parameter) * jacobian.Screw(column);
       const Eigen::Vector3d turn = screw.head<3>(), p = jacobian.Position(i);
       effects.back().col(column) << turn, turn.cross(p) + screw.tail<3>();
     }

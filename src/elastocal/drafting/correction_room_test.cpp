@@ -2,6 +2,7 @@
 #include "elastocal/drafting/correction_room.hpp"
 
 #include <cmath>
+#include <regex>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -99,6 +100,23 @@ TEST(CorrectionRoom, DisplacementsAreThoseOfDrawnErrors) {
   const double drawn = std::sqrt(squares / (3.0 * kRobots));
   // A standard deviation of 3000 draws of a few independent errors is known to 2 %.
   EXPECT_NEAR(ExpectedDisplacement(tree, tip, q) / drawn, 1.0, 0.06);
+}
+
+// A URDF may have placeholders for efforts. A joint that carries its load gives way by 0.01 rad
+// under it at most (one standard deviation).
+TEST(CorrectionRoom, AnEffortThatCannotBeMakesNoSoftRobot) {
+  const auto displacement = [](const std::string& effort) {
+    const std::string urdf =
+        std::regex_replace(ArmUrdf(0.4, "lower='-2' upper='2'"), std::regex("effort='1e6'"),
+                           "effort='" + effort + "'");
+    const RobotTree tree = ParseUrdf(urdf, "arm.urdf");
+    const Eigen::VectorXd q = Eigen::VectorXd::Constant(tree.coordinate_count(), 0.3);
+    return ExpectedDisplacement(tree, FindLink(tree, "w2"), q);
+  };
+  const double soft = displacement("1e-3");
+  EXPECT_GT(soft, 1.05 * displacement("1e6"));
+  EXPECT_NEAR(soft, displacement("1e-6"), 1e-12);
+  EXPECT_LT(soft, 0.01);
 }
 
 // Six joints undo an error entirely: at the hand nothing would be left, at the elbow something is.

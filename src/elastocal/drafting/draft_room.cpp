@@ -19,6 +19,8 @@ double DegreesDown(double angle) {
 double DegreesUp(double angle) { return kRadiansPerDegree * std::ceil(angle / kRadiansPerDegree); }
 double MillimetresUp(double length) { return kMetresPerMm * std::ceil(length / kMetresPerMm); }
 
+constexpr double kMostRoom = 45.0 * kRadiansPerDegree;  // of a project (files/bounds.cpp)
+
 /// By sphere, the one at its mirror image in the root link's x-z plane; itself if there is none.
 std::vector<std::size_t> Images(const ProjectDraft& draft) {
   constexpr double kSame = 2e-3;
@@ -77,7 +79,8 @@ void LeaveRoomForCorrections(ProjectDraft& draft) {
   draft.sphere_margin = std::max(draft.sphere_margin, MillimetresUp(margin));
   for (const auto& [c, sd] : sds) {
     const Joint& joint = draft.tree.joints[Size(draft.tree.coordinate_joint[Size(c)])];
-    if (joint.type == JointType::kRevolute) draft.room[c] = DegreesUp(RoomSds(sds.size()) * sd);
+    if (joint.type != JointType::kRevolute) continue;
+    draft.room[c] = std::min(DegreesUp(RoomSds(sds.size()) * sd), kMostRoom);
   }
   for (const Limb* limb : limbs) {  // alike on both sides
     if (limb->mirror < 0) continue;

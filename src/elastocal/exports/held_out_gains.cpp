@@ -8,10 +8,12 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/known_places.hpp"
 #include "elastocal/recorded/measurements.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
+#include "elastocal/robot/moving_coordinates.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 #include "elastocal/validation/transfer.hpp"
 
@@ -47,7 +49,7 @@ std::vector<HeldOutSplit> FoldSplits(const RecordedModel& recorded, const Record
     throw InputError(fmt::format("{}: {} postures; {} or more were expected to judge joints by",
                                  recording.source, recording.posture_count(), kLeastGainPostures));
   }
-  FoldOptions folds{.folds = kGainFolds};
+  FoldOptions folds{.folds = kGainFolds, .coordinates = MovingCoordinates(recorded.model)};
   if (recording.trials.size() >= kGainFolds) folds.unit = FoldUnit::kTrial;
   const std::vector<int> fold_of = DealFolds(recording, folds);
   std::vector<HeldOutSplit> splits;
@@ -98,13 +100,15 @@ HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& o
   Project project = robot.project;
   CheckHasMarkers(project);
   project.elasticity = ElasticityOf(robot.calibration, project);
+  const Assumptions told = RecordedAssumptions(robot);
+  project.measurement.accepted = told.accept;
   Measurements measured = ReadMeasurements(project, RecordedRecordings(robot));
+  AcceptMistakes(project, told.accept, measured);
   const RecordedModel recorded = MakeRecordedModel(project, {}, measured);
   CheckApplies(robot.calibration, project, recorded.model);
   std::vector<std::string> warnings;
-  const std::vector<MarkerMeasurement> places =
-      OpenMarkerPlaces(RecordedAssumptions(robot).marker_places, project, measured.calibration,
-                       recorded.knocks, warnings);
+  const std::vector<MarkerMeasurement> places = OpenMarkerPlaces(
+      told.marker_places, project, measured.calibration, recorded.knocks, warnings);
   GainOptions knowing = options;
   knowing.known_markers = MeasuredMarkers(
       places, recorded.model,

@@ -206,7 +206,7 @@ void CrossValidateRun(int folds, Work& work) {
   const auto kind = static_cast<std::size_t>(run.comparison.largest_kind());
   const std::string worse =
       DescribeWorseUpdate(options.prior, work.robot, work.recording(), work.settings(),
-                          run.cross_validation.metrics[kind].rmse_3d);
+                          run.cross_validation.distances[kind]);
   if (!worse.empty()) run.warnings.push_back(worse);
 }
 
@@ -361,7 +361,8 @@ CalibrationRun CalibrateExperiment(const Project& given,
                                 work.settings().earlier);
 
   // Section 6.1.4, Table 2: errors on postures and on motions that took no part in the estimate.
-  const int folds = work.sound ? options.folds.value_or(UsualFolds(work.recording())) : 0;
+  const int folds =
+      work.sound ? options.folds.value_or(UsualFolds(work.robot.model, work.recording())) : 0;
   if (folds > 0) CrossValidateRun(folds, work);
   JudgeOnOtherTrials(work);
   JudgeRun(work);

@@ -41,13 +41,14 @@ std::vector<std::string> DescribePlay(const JointCheck& check, const StoredCalib
   });
   std::vector<std::string> texts;
   for (const JointSuspect& joint : accused) {
+    const bool angle = !joint.zero_is_length;
+    const std::string zero = joint.joint + (angle ? ".theta" : ".r");
     for (const char* cause : {"backlash", "hysteresis"}) {
       const auto half = earlier.joint_errors.find(joint.joint + "." + cause);
       if (half == earlier.joint_errors.end()) continue;
       const double play = 2.0 * std::abs(half->second);
       for (const ParameterChange& change : joint.changes) {
-        const bool angle = change.name == joint.joint + ".theta";
-        if (!angle && change.name != joint.joint + ".r") continue;
+        if (change.name != zero) continue;
         if (std::abs(change.value) > play + 2.0 * change.sd) continue;
         texts.push_back(fmt::format(
             "{}: the calibration has {} there, {:.2g} {} from one side to the other; what seems to "
@@ -62,14 +63,17 @@ std::vector<std::string> DescribePlay(const JointCheck& check, const StoredCalib
 
 /// Errors that `estimate` leaves: over all observations, and rms over the markers of each posture.
 void MeasureLeft(const EarlierFit& fit, const CalibrationOptions& options, CheckRun& run) {
-  const auto seen = SeenMask(fit.measured.calibration);
   const Eigen::MatrixXd distances = DistancesBy(fit, options);
-  run.rmse_estimate = ComputeMetrics(distances, seen).rmse_3d;
+  run.rmse_estimate = ComputeMetrics(distances, SeenMask(fit.measured.calibration)).rmse_3d;
   run.left.setZero(distances.rows());
   for (Eigen::Index i = 0; i < run.left.size(); ++i) {
-    const Eigen::ArrayXd counts = seen.row(i).cast<double>().transpose();
-    const double squares = (counts * distances.row(i).transpose().array().square()).sum();
-    run.left[i] = std::sqrt(squares / std::max(1.0, counts.sum()));
+    double squares = 0.0, count = 0.0;
+    for (const double distance : distances.row(i)) {
+      if (!std::isfinite(distance)) continue;  // not seen
+      squares += distance * distance;
+      count += 1.0;
+    }
+    run.left[i] = std::sqrt(squares / std::max(1.0, count));
   }
 }
 
@@ -81,6 +85,7 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
   CheckRun run;
   run.calibration_file = FindCalibrationFiles(calibration_file).calibration.string();
   Project project = given;
+  project.measurement.accepted = options.accept;
   Measurements measured = ReadMeasurements(project, {recording}, ReadFor::kAnyUse);
   for (const std::string& what : AcceptMistakes(project, options.accept, measured)) {
     run.warnings.push_back(DescribeUndone(what));

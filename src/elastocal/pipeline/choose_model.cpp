@@ -50,8 +50,8 @@ bool MissesSprings(const Measurements& measured, std::optional<std::uint64_t> se
   return instead && IsPlainlyLess(decided->errors, instead->errors);
 }
 
-/// The recording of a table with each marker that was glued on again seen only where it was for
-/// longer. Held-out errors would be those of its two places.
+}  // namespace
+
 Measurements WithMarkersInOnePlace(Measurements measured, const Project& project) {
   Recording& recording = measured.calibration;
   for (const Knock& moved : FindMovedMarkers(recording, SeenClusters(project, recording))) {
@@ -63,8 +63,6 @@ Measurements WithMarkersInOnePlace(Measurements measured, const Project& project
   }
   return measured;
 }
-
-}  // namespace
 
 ModelChoice ChooseModel(const Measurements& given, std::optional<std::uint64_t> seed, int folds,
                         int threads, Project& project, AskForSprings ask) {

@@ -23,6 +23,10 @@ struct ModelChoice {
 /// Whether to determine `misses_springs`, which takes several estimates.
 enum class AskForSprings { kYes, kNo };
 
+/// The measurements with each marker of a table that was glued on again (FindMovedMarkers) seen
+/// only where it was for longer. Held-out errors would be those of its two places.
+Measurements WithMarkersInOnePlace(Measurements measured, const Project& project);
+
 /// Chooses elastic joints, then causes beyond geometry and springs, where the project leaves them
 /// open, and sets both in the project. A large cause hides springs, and a missing spring looks like
 /// further causes. A marker of a table that was glued on again counts where it was for longer.

@@ -6,6 +6,7 @@
 #include "elastocal/pipeline/choose_causes.hpp"
 #include "elastocal/pipeline/choose_model.hpp"
 #include "elastocal/recorded/choose_elasticity.hpp"
+#include "elastocal/robot/moving_coordinates.hpp"
 
 namespace elastocal {
 namespace {
@@ -25,6 +26,7 @@ Project ProjectOfFold(const ExperimentData& data, const Measurements& training) 
   Project project = data.project;
   if (data.chose_causes && MayChooseCauses(training.calibration.posture_count())) {
     if (data.open_elasticity) project.elasticity = *data.open_elasticity;
+    project.elasticity.extra.clear();  // chosen by all postures, those that are held out too
     ChooseModel(training, data.seed, kInnerFolds, 1, project, AskForSprings::kNo);
     return project;
   }
@@ -84,9 +86,9 @@ CrossValidation CrossValidateExperiment(const ExperimentData& data, const Record
   return validation;
 }
 
-int UsualFolds(const Recording& recording) {
+int UsualFolds(const ErrorModel& model, const Recording& recording) {
   if (!recording.trials.empty() || recording.posture_count() > 2000) return 0;
-  const int folds = FoldsFor(recording, 10);
+  const int folds = FoldsFor(recording, 10, MovingCoordinates(model));
   return folds < 2 ? 0 : folds;
 }
 

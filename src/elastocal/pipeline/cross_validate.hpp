@@ -33,7 +33,7 @@ CrossValidation CrossValidateExperiment(const ExperimentData& data, const Record
 inline constexpr int kMostNested = 300;
 
 /// Ten folds for a posture table that is not very large; one each for few postures. Else 0.
-int UsualFolds(const Recording& recording);
+int UsualFolds(const ErrorModel& model, const Recording& recording);
 
 /// Choices that the folds do not make anew but take from all postures together: "elasticity" in
 /// large tables, "causes" where a fold has too few postures to choose any.

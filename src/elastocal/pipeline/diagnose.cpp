@@ -13,6 +13,7 @@
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/cause_picture_json.hpp"
+#include "elastocal/pipeline/choose_model.hpp"
 #include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/known_places.hpp"
@@ -192,6 +193,7 @@ Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
                             EstimateObserved(begin.model, begin.observations, {}).fit, seed);
     diagnosis.recording = fmt::format("{}", fmt::join(begin.observations.files, ", "));
   } else {
+    project.measurement.accepted = told.accept;
     Measurements measured = ReadMeasurements(project, recordings);
     AcceptMistakes(project, told.accept, measured);
     if (told.prior.empty()) {
@@ -203,7 +205,7 @@ Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
     std::vector<std::string> said_by_calibrate;
     const std::vector<MarkerMeasurement> places =
         OpenMarkerPlaces(told.marker_places, project, measured.calibration, {}, said_by_calibrate);
-    diagnosis.report = StudyCauses(project, measured, seed, places);
+    diagnosis.report = StudyCauses(project, WithMarkersInOnePlace(measured, project), seed, places);
     diagnosis.recording = measured.calibration.source;
   }
   diagnosis.calibration_fingerprint = robot.calibration.fingerprint;

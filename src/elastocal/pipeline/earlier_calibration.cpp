@@ -14,6 +14,7 @@
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
+#include "elastocal/robot/zero_offset.hpp"
 #include "elastocal/validation/data_information.hpp"
 #include "elastocal/validation/earlier_markers.hpp"
 #include "elastocal/validation/transfer.hpp"
@@ -297,7 +298,7 @@ EarlierEstimate KnownAfter(const EarlierFit& fit, double days, const Calibration
 
 std::string DescribeWorseUpdate(const std::filesystem::path& calibration,
                                 const RecordedModel& robot, const Recording& recording,
-                                CalibrationOptions options, double updated) {
+                                CalibrationOptions options, const Eigen::MatrixXd& updated) {
   constexpr double kClearly = 1.1;
   options.earlier = {};
   // Markers and waist are fitted to all postures with the earlier calibration, but to those of
@@ -308,15 +309,19 @@ std::string DescribeWorseUpdate(const std::filesystem::path& calibration,
   if (fitted >= rows) return "";
   const double by_fit = std::sqrt((1.0 + fitted / rows) / (1.0 - fitted / rows));
   const StoredCalibration stored = ReadCalibration(FindCalibrationFiles(calibration).calibration);
-  const double before =
-      ValidateTransfer(robot.model, recording, robot.base, options, stored.joint_errors)
-          .calibrated.metrics_all.rmse_3d;
-  if (!(updated > kClearly * by_fit * before)) return "";
+  const CalibrationResult refit =
+      RefitTo(robot.model, recording, robot.base, options, stored.joint_errors).result;
+  const Eigen::MatrixXd distances = Predict(refit.model, refit.delta, recording, options).distances;
+  if (distances.cols() != updated.cols()) return "";  // clusters that were knocked are split
+  const ObservationMask judged = updated.array().isFinite();
+  const double before = ComputeMetrics(distances, judged).rmse_3d;
+  const double after = ComputeMetrics(updated, judged).rmse_3d;
+  if (!(after > kClearly * by_fit * before)) return "";
   return fmt::format(
       "{}: errs by {:.3g} mm on these postures, and the update by {:.3g} mm on those that were "
       "left "
       "out: they are too few or too near to each other to improve on it",
-      stored.source, 1e3 * before, 1e3 * updated);
+      stored.source, 1e3 * before, 1e3 * after);
 }
 
 std::string CountsTwice(const std::string& source) {

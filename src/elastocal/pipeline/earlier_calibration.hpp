@@ -96,9 +96,10 @@ std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibrati
                                           std::optional<std::uint64_t> seed, Project& project);
 
 /// A warning where an update predicts held-out postures clearly worse (by 10 %) than the
-/// calibration that was its prior; else empty. `updated` is its error on these postures (m, 3-D).
+/// calibration that was its prior; else empty. `updated`: its distances on these postures
+/// (CrossValidation::distances), m. Both are judged by the observations that have one.
 std::string DescribeWorseUpdate(const std::filesystem::path& calibration,
                                 const RecordedModel& robot, const Recording& recording,
-                                CalibrationOptions options, double updated);
+                                CalibrationOptions options, const Eigen::MatrixXd& updated);
 
 }  // namespace elastocal

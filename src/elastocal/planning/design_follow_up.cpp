@@ -11,6 +11,7 @@
 #include "elastocal/pipeline/calibration_files.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/planning/chain_setups.hpp"
+#include "elastocal/robot/zero_offset.hpp"
 #include "elastocal/tables/json_text.hpp"
 #include "elastocal/validation/earlier_markers.hpp"
 

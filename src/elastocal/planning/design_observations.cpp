@@ -14,6 +14,7 @@
 #include "elastocal/observation/observation_fit.hpp"
 #include "elastocal/pipeline/contact_earlier.hpp"
 #include "elastocal/planning/posture_information.hpp"
+#include "elastocal/robot/zero_offset.hpp"
 #include "elastocal/tables/json_text.hpp"
 #include "elastocal/validation/common_parameters.hpp"
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/planning/next_postures.hpp"
 
+#include <optional>
+
 #include <nlohmann/json.hpp>
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/planning/design_follow_up.hpp"
 #include "elastocal/planning/design_observations.hpp"
+#include "elastocal/planning/leave_room.hpp"
 #include "elastocal/robot/coordinates.hpp"
 #include "elastocal/tables/json_text.hpp"
 
@@ -20,7 +23,7 @@ NextPostures DesignNextPostures(const Project& project, const std::filesystem::p
     next.why_none = "the project has no section 'design', which says what postures may be";
     return next;
   }
-  const FollowUpDesign design = DesignFollowUp(project, calibration,
+  const FollowUpDesign design = DesignFollowUp(WithRoom(project, std::nullopt), calibration,
                                                {.aim = SequentialAim::kChanges,
                                                 .postures = count,
                                                 .days = options.days,
@@ -39,7 +42,7 @@ NextPostures DesignNextPostures(const Project& project, const std::filesystem::p
   if (run.check.suspects.empty()) return next;
   ObservationDesign design;
   try {
-    design = DesignObservations(project,
+    design = DesignObservations(WithRoom(project, std::nullopt),
                                 {.count = count,
                                  .candidates = 40,
                                  .seed = options.seed.value_or(1),

@@ -7,6 +7,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/recorded/find_base.hpp"
+#include "elastocal/robot/moving_coordinates.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 
 namespace elastocal {
@@ -60,7 +61,7 @@ std::optional<ElasticityTrial> TryElasticity(const Recording& recording,
   try {
     const CrossValidation folds =
         CrossValidate(std::vector<ModelKind>{kind}, model, sample, base, project.calibration,
-                      {.folds = FoldsFor(sample, most_folds),
+                      {.folds = FoldsFor(sample, most_folds, MovingCoordinates(model)),
                        .threads = threads,
                        .by = FootingBy::kAllOfPosture});
     trial.rmse_3d = folds.metrics[static_cast<int>(kind)].rmse_3d;

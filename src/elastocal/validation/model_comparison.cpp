@@ -13,6 +13,7 @@
 #include "elastocal/math/parallel.hpp"
 #include "elastocal/math/random.hpp"
 #include "elastocal/measurement/moments.hpp"
+#include "elastocal/robot/moving_coordinates.hpp"
 
 namespace elastocal {
 namespace {
@@ -66,34 +67,52 @@ const char* NameOfUnits(FoldUnit unit) {
   }
 }
 
-/// Unit of each posture: postures of one unit are left out together.
-std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit) {
-  if (unit == FoldUnit::kTrial) return recording.trial;
-  if (unit == FoldUnit::kSession) return SessionOfPosture(recording);
-  const int postures = recording.posture_count();
-  if (postures == 0) return {};
+/// Unites nearly equal postures. Moments of a motion that follow each other within a stretch are
+/// equal without being a repetition: they would unite the whole motion, moment by moment.
+void UnitePostures(const Recording& recording, const Eigen::MatrixXd& q, std::vector<int>& units) {
+  const std::vector<int> motion = MotionOfPostures(recording);
+  const auto neighbours = [&](int a, int b) {
+    return motion[a] >= 0 && motion[a] == motion[b] &&
+           std::abs(recording.time_s[a] - recording.time_s[b]) <= kStretch_s;
+  };
+  const auto postures = static_cast<int>(q.rows());
   // Nearly equal postures are neighbours in the order of the joint that moves furthest.
-  std::vector<int> order(postures), units(postures);
+  std::vector<int> order(postures);
   std::iota(order.begin(), order.end(), 0);
   Eigen::Index furthest = 0;
-  (recording.q.colwise().maxCoeff() - recording.q.colwise().minCoeff()).maxCoeff(&furthest);
-  const Eigen::VectorXd positions = recording.q.col(furthest);
+  (q.colwise().maxCoeff() - q.colwise().minCoeff()).maxCoeff(&furthest);
+  const Eigen::VectorXd positions = q.col(furthest);
   std::sort(order.begin(), order.end(),
             [&](int a, int b) { return std::pair(positions[a], a) < std::pair(positions[b], b); });
-  std::iota(units.begin(), units.end(), 0);
   for (int k = 0; k < postures; ++k) {
     const int end = std::min(postures, k + 1 + kMostCompared);
     int united = 0;
     for (int l = k + 1; l < end && united < kMostUnited; ++l) {
       if (positions[order[l]] - positions[order[k]] > kSamePosture) break;
-      const auto apart = (recording.q.row(order[k]) - recording.q.row(order[l])).cwiseAbs();
-      if (apart.maxCoeff() > kSamePosture) continue;
+      const auto apart = (q.row(order[k]) - q.row(order[l])).cwiseAbs();
+      if (apart.maxCoeff() > kSamePosture || neighbours(order[k], order[l])) continue;
       Unite(order[k], order[l], units);
       ++united;
     }
   }
+}
+
+/// Unit of each posture: postures of one unit are left out together. Those of a table differ by the
+/// given coordinates of q, or by all where none is given.
+std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit,
+                               const std::vector<int>& coordinates) {
+  if (unit == FoldUnit::kTrial) return recording.trial;
+  if (unit == FoldUnit::kSession) return SessionOfPosture(recording);
+  if (recording.posture_count() == 0) return {};
+  std::vector<int> units(Size(recording.posture_count()));
+  std::iota(units.begin(), units.end(), 0);
+  if (coordinates.empty()) {
+    UnitePostures(recording, recording.q, units);
+  } else {
+    UnitePostures(recording, recording.q(Eigen::all, coordinates), units);
+  }
   UniteMoments(recording, units);
-  for (int i = 0; i < postures; ++i) units[i] = FirstOfUnit(i, units);
+  for (int i = 0; i < recording.posture_count(); ++i) units[i] = FirstOfUnit(i, units);
   return units;
 }
 
@@ -176,13 +195,14 @@ ObservationMask Judged(const ErrorModel& model, const Recording& recording, Foot
 
 }  // namespace
 
-int FoldsFor(const Recording& recording, int wanted) {
-  const auto units = DistinctUnits(UnitOfPosture(recording, FoldUnit::kPosture)).size();
+int FoldsFor(const Recording& recording, int wanted, const std::vector<int>& coordinates) {
+  const auto units =
+      DistinctUnits(UnitOfPosture(recording, FoldUnit::kPosture, coordinates)).size();
   return std::min(wanted, static_cast<int>(units));
 }
 
 std::vector<int> DealFolds(const Recording& recording, const FoldOptions& options) {
-  const std::vector<int> unit_of = UnitOfPosture(recording, options.unit);
+  const std::vector<int> unit_of = UnitOfPosture(recording, options.unit, options.coordinates);
   std::vector<int> units = DistinctUnits(unit_of);
   const int count = static_cast<int>(units.size());
   if (count == 0) {
@@ -270,8 +290,10 @@ CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorMo
 
 CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorModel& model,
                               const Recording& recording, const CalibrationOptions& options,
-                              const FoldOptions& folds, const MakeFold& make,
+                              const FoldOptions& given, const MakeFold& make,
                               const Progress& progress) {
+  FoldOptions folds = given;
+  folds.coordinates = MovingCoordinates(model);
   const std::vector<int> fold_of = DealFolds(recording, folds);
   std::vector<FoldResult> results(static_cast<std::size_t>(folds.folds));
   ForAll(
@@ -294,7 +316,7 @@ CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorMo
   const ObservationMask judged = Judged(model, recording, folds.by);
   CrossValidation validation;
   validation.folds = folds.folds;
-  validation.unit_of = UnitOfPosture(recording, folds.unit);
+  validation.unit_of = UnitOfPosture(recording, folds.unit, folds.coordinates);
   for (const FoldResult& result : results) validation.unconverged += result.unconverged;
   for (ModelKind kind : kinds) {
     const auto k = static_cast<int>(kind);

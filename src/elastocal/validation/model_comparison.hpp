@@ -56,11 +56,14 @@ struct FoldOptions {
   std::uint64_t seed = 1;  ///< seed by which the units are distributed to the folds
   int threads = 1;
   FootingBy by = FootingBy::kAllMarkers;  ///< markers that place the feet in the held-out postures
+  /// Coordinates of q by which postures differ (MovingCoordinates); empty: all.
+  std::vector<int> coordinates = {};
 };
 
-/// The number of folds: `wanted`, or the number of different postures if that is smaller. Moments
+/// The number of folds: `wanted`, or the number of different postures if that is smaller: of those
+/// that differ by 0.02 rad or m in one of the coordinates (MovingCoordinates; none: all). Moments
 /// of a motion (MotionOfPostures) are left out in stretches of five seconds.
-int FoldsFor(const Recording& recording, int wanted);
+int FoldsFor(const Recording& recording, int wanted, const std::vector<int>& coordinates = {});
 
 /// The fold of each posture: a random permutation of the units is cut into parts of equal size.
 /// Throws InputError for a number of folds that the recording does not allow.

@@ -2,6 +2,7 @@
 #include "elastocal/validation/model_comparison.hpp"
 
 #include <chrono>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -17,6 +18,37 @@ TEST(FoldsFor, EqualPosturesAreOneUnitHoweverManyOthersLieBetween) {
     for (const int row : {i, i + kThere}) recording.q.row(row) << 0.03 * i, -0.03 * i;
   }
   EXPECT_EQ(FoldsFor(recording, 2 * kThere), kThere);
+}
+
+// A motion at 100 Hz: each moment is nearly equal to the next one. Its stretches of five seconds
+// stay apart.
+TEST(FoldsFor, MomentsOfAMotionAreNoRepetitions) {
+  constexpr int kMoments = 1500;
+  Recording recording;
+  recording.q.resize(kMoments, 2);
+  recording.time_s.resize(kMoments);
+  for (int i = 0; i < kMoments; ++i) {
+    recording.time_s[i] = 0.01 * i;
+    recording.q.row(i) << 0.01 * i, std::sin(0.02 * i);
+  }
+  EXPECT_EQ(FoldsFor(recording, 10), 3);
+  // A minute later it goes the same way: what is held out must not be there once more.
+  Recording again = recording;
+  again.q.resize(2 * kMoments, 2);
+  again.q << recording.q, recording.q;
+  again.time_s.resize(2 * kMoments);
+  again.time_s << recording.time_s, recording.time_s.array() + 60.0;
+  EXPECT_LE(FoldsFor(again, 10), 3);
+}
+
+// A head that looks about makes no new postures of an arm.
+TEST(FoldsFor, PosturesDifferByTheJointsThatMoveWhatIsMeasured) {
+  constexpr int kPostures = 12, kTimes = 8;
+  Recording recording;
+  recording.q.resize(kPostures * kTimes, 2);
+  for (int i = 0; i < kPostures * kTimes; ++i) recording.q.row(i) << 0.1 * (i % kPostures), 0.3 * i;
+  EXPECT_EQ(FoldsFor(recording, 50), 50);
+  EXPECT_EQ(FoldsFor(recording, 50, {0}), kPostures);
 }
 
 // All pairs of them would take minutes.

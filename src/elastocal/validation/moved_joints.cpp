@@ -9,6 +9,7 @@
 #include "elastocal/math/decompositions.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/robot/zero_offset.hpp"
 #include "elastocal/validation/common_parameters.hpp"
 #include "elastocal/validation/data_information.hpp"
 
@@ -343,19 +344,6 @@ double SmallestChange(double sd, double size, std::size_t joints) {
   const double needed = std::log(2.0 * static_cast<double>(joints)) + kOddsAgainst;
   const double z = std::sqrt((2.0 * needed + std::log1p(told)) * (1.0 + told) / told);
   return sd * (z + kNineInTen);
-}
-
-bool IsZeroOffset(const Parameter& parameter, const RobotTree& tree) {
-  if (parameter.kind == ParameterKind::kMotorZero) return true;
-  if (parameter.linkage >= 0) {
-    const std::vector<Rod>& rods = tree.linkages[Size(parameter.linkage)].rods;
-    return std::any_of(rods.begin(), rods.end(), [&](const Rod& rod) {
-      return rod.actuator && parameter.name == rod.motor + ".length";
-    });
-  }
-  if (parameter.joint < 0) return false;
-  const bool prismatic = tree.joints[parameter.joint].type == JointType::kPrismatic;
-  return parameter.kind == (prismatic ? ParameterKind::kR : ParameterKind::kTheta);
 }
 
 Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& model,

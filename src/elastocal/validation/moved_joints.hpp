@@ -73,10 +73,6 @@ struct JointCheckOptions {
   bool new_markers = false;
 };
 
-/// Whether a parameter is what a displaced encoder changes: theta, or r of a prismatic joint; the
-/// zero of a motor with a rod, or the length of a linear actuator.
-bool IsZeroOffset(const Parameter& parameter, const RobotTree& tree);
-
 /// Standard deviation of a sudden change of each parameter of `earlier`, SI: twice the prior of a
 /// new robot; 0 for parameters that do not jump (springs, legs, sensors).
 Eigen::VectorXd SizeOfChanges(const EarlierEstimate& earlier, const ErrorModel& model,
