@@ -336,8 +336,9 @@ void JudgeFold(const LinearStudy& study, const CauseSearchOptions& options,
 }
 
 /// Judges the search as a whole by nested folds. One division into folds may happen to favour or to
-/// hide a cause: the errors of a posture are means over several. The standard error of the gain is
-/// that of one division, because divisions of the same postures are not independent.
+/// hide a cause: the errors of a posture are means over several. The standard error of the gain
+/// follows from the scatter within a division; neither divisions nor folds are independent, because
+/// they train on common postures (Nadeau and Bengio, 2003).
 void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
                  const std::vector<int>& postures, const StudySums& all, CauseSearch& result) {
   Random random(options.seed);
@@ -367,7 +368,7 @@ void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
   result.error = std::sqrt(sums[0] / std::max(1.0, markers));
   result.nested_error = std::sqrt(sums[1] / std::max(1.0, markers));
   result.nested_gain = MeanOf(GainsOf(squares, postures)).mean;
-  result.nested_gain_sd = std::sqrt(variance);
+  result.nested_gain_sd = std::sqrt(variance * (1.0 / deals + folds / (folds - 1.0)));
 }
 
 }  // namespace
