@@ -211,6 +211,23 @@ TEST_F(Program, CheckNamesAGainAndAScale) {
   expect(scale, "the cameras' positions are 1.00", 1.002);
 }
 
+// The error of a posture is that of the markers that were seen in it.
+TEST_F(Program, CheckMeasuresPosturesWithHiddenMarkers) {
+  ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
+  Recording today = MakeSyntheticRecording(model_, truth_, {.postures = 12, .seed = 5});
+  for (int i = 0; i < today.posture_count(); i += 3) {
+    today.markers.block<1, 3>(i, 0).setConstant(std::nan(""));
+  }
+  const std::filesystem::path table = scratch_.path() / "today.csv";
+  WritePostureTable(table, today, arm_.tree);
+  const std::string file = (scratch_.path() / "check.json").string();
+  RunProgram("check " + project_ + " --calibration " + out_ + " --recording " + table.string() +
+             " --json " + file);
+  const nlohmann::json left = nlohmann::json::parse(ReadFile(file))["left_by_posture_mm"];
+  ASSERT_EQ(left.size(), 12u);
+  for (const nlohmann::json& one : left) EXPECT_GT(one.is_null() ? 0.0 : one.get<double>(), 0.0);
+}
+
 class ArmProgram : public ArmWithTracker {};
 
 TEST_F(ArmProgram, ChecksTablesOfATrackerInSeveralFiles) {

@@ -7,11 +7,13 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/math/random.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/validation/model_comparison.hpp"
 #include "tests/expect_input_error.hpp"
+#include "tests/test_files.hpp"
 #include "tests/test_robots.hpp"
 
 namespace elastocal {
@@ -163,6 +165,23 @@ TEST_F(LegEstimation, EveryParameterHasAStatus) {
   EXPECT_EQ(offsets.status[Find("leg_3.theta")], ParameterStatus::kEstimated);
   EXPECT_EQ(offsets.status[Find("leg_3.alpha")], ParameterStatus::kNotInModel);
   EXPECT_EQ(offsets.delta[Find("leg_3.alpha")], 0.0);
+}
+
+// The zero of a sliding joint is a length along its axis.
+TEST(Offsets, OfASlideAreLengths) {
+  const Project arm = ReadProject(SourceFile("tests/robots/arm6_project.yaml"));
+  const ErrorModel model = MakeErrorModel(arm.tree, arm.markers, arm.placement);
+  const Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
+  const CalibrationResult offsets =
+      Calibrate(model, MakeSyntheticRecording(model, truth, {.postures = 20}),
+                FindBaseParameters(model, arm.identifiability), ModelKind::kOffsetsOnly, {});
+  const auto status = [&](const char* name) {
+    return offsets.status[static_cast<std::size_t>(FindParameter(model.parameters, name))];
+  };
+  EXPECT_EQ(status("rail_joint.theta"), ParameterStatus::kNotInModel);
+  EXPECT_NE(status("rail_joint.r"), ParameterStatus::kNotInModel);
+  EXPECT_NE(status("elbow_joint.theta"), ParameterStatus::kNotInModel);
+  EXPECT_EQ(status("elbow_joint.r"), ParameterStatus::kNotInModel);
 }
 
 TEST_F(LegEstimation, FewerEquationsThanParametersAreRefused) {
