@@ -14,6 +14,7 @@
 #include "elastocal/math/random.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
+#include "elastocal/robot/zero_offset.hpp"
 #include "elastocal/screening/camera_scale.hpp"
 #include "tests/invented_arm.hpp"
 
