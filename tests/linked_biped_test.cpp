@@ -23,6 +23,7 @@
 #include "elastocal/robot/kinematics.hpp"
 #include "elastocal/robot/linkage_errors.hpp"
 #include "elastocal/robot/move_motors.hpp"
+#include "elastocal/robot/zero_offset.hpp"
 #include "elastocal/screening/recording_faults.hpp"
 #include "elastocal/simulation/synthetic_recording.hpp"
 #include "elastocal/simulation/true_robot.hpp"
