@@ -24,13 +24,13 @@ double ErrorOf(const LinearStudy::Posture& posture, const Eigen::VectorXd& resid
                    std::max(1, posture.markers));
 }
 
-/// Whether a mean gain over `postures` postures justifies a change of the robot: its 95 % interval
-/// is above zero, or it exceeds both its standard error and 5 % of `error`.
-bool IsWorth(double gain, double sd, double error, std::size_t postures) {
-  constexpr double kMatters = 0.05;
-  const double freedom = std::max(1.0, static_cast<double>(postures) - 1.0);
-  return gain > StudentQuantile(0.975, freedom) * sd || (gain > sd && gain > kMatters * error);
+/// Whether the 95 % interval of a mean gain over `postures` postures is above zero.
+bool IsCertain(double gain, double sd, std::size_t postures) {
+  return gain > StudentQuantile(0.975, std::max(1.0, static_cast<double>(postures) - 1.0)) * sd;
 }
+
+/// Whether a mean gain exceeds both its standard error and 5 % of `error`.
+bool Matters(double gain, double sd, double error) { return gain > sd && gain > 0.05 * error; }
 
 /// Divides the postures into folds at random.
 std::vector<std::vector<int>> Deal(std::vector<int> postures, int folds, Random& random) {
@@ -112,7 +112,8 @@ class Search {
  private:
   bool Helps(const CauseFinding& finding) const {
     return finding.p_adjusted < options_.level &&
-           IsWorth(finding.mean_gain, finding.gain_sd, error_, postures_.size());
+           (IsCertain(finding.mean_gain, finding.gain_sd, postures_.size()) ||
+            Matters(finding.mean_gain, finding.gain_sd, error_));
   }
 
   /// Causes that explain what is left almost as well: the likelihoods differ by less than a factor
@@ -367,8 +368,11 @@ void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
   }
   result.error = std::sqrt(sums[0] / std::max(1.0, markers));
   result.nested_error = std::sqrt(sums[1] / std::max(1.0, markers));
-  result.nested_gain = MeanOf(GainsOf(squares, postures)).mean;
+  const MeanGain gain = MeanOf(GainsOf(squares, postures));
+  result.nested_gain = gain.mean;
   result.nested_gain_sd = std::sqrt(variance * (1.0 / deals + folds / (folds - 1.0)));
+  result.accepted = IsCertain(gain.mean, result.nested_gain_sd, postures.size()) ||
+                    Matters(gain.mean, std::sqrt(gain.variance), result.error);
 }
 
 }  // namespace
@@ -387,11 +391,7 @@ CauseSearch SearchCauses(const LinearStudy& study, const CauseSearchOptions& opt
   search.Forward(&result.chosen, &result.findings);
   search.Findings({});
   result.error = search.error();
-  if (!result.chosen.empty()) {
-    JudgeNested(study, options, postures, sums, result);
-    result.accepted =
-        IsWorth(result.nested_gain, result.nested_gain_sd, result.error, postures.size());
-  }
+  if (!result.chosen.empty()) JudgeNested(study, options, postures, sums, result);
   std::stable_sort(result.findings.begin(), result.findings.end(),
                    [](const CauseFinding& a, const CauseFinding& b) { return a.p < b.p; });
   return result;

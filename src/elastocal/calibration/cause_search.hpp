@@ -51,10 +51,11 @@ struct CauseSearch {
   double error = 0.0;                ///< root mean square held-out error without any cause
   /// Error and gain of the whole search by nested folds: in each fold the causes are chosen without
   /// the postures on which they are judged. In tables of up to 60 postures, these are means over
-  /// ten divisions into folds; over fewer in larger ones.
+  /// ten divisions into folds; over fewer in larger ones. The standard error of the gain allows for
+  /// training postures that folds have in common.
   double nested_error = 0.0, nested_gain = 0.0, nested_gain_sd = 0.0;
   /// Whether the 95 % interval of the nested gain is above zero or, if not, the gain is larger than
-  /// its standard error and than 5 % of the error.
+  /// 5 % of the error and than the standard error by the scatter of the postures alone.
   bool accepted = false;
 };
 
