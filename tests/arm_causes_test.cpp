@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "elastocal/pipeline/contact_validation.hpp"
 #include "elastocal/pipeline/diagnose.hpp"
 #include "tests/arm_with_tracker.hpp"
+#include "tests/expect_input_error.hpp"
 
 namespace elastocal {
 namespace {
@@ -68,7 +70,7 @@ TEST_F(ArmWithCause, IsTakenByTheCalibrationAndKnownOnAnotherDay) {
             0.8 * ContactRun::Judged(*run.geometric).rows[0].rms);
   const nlohmann::json summary = nlohmann::json::parse(MakeContactSummary(run));
   EXPECT_EQ(summary["extra"][0], "elbow_joint.eccentricity");
-  EXPECT_EQ(summary["contact"]["kfold"]["decided_once"][0], "causes");
+  EXPECT_EQ(summary["contact"]["kfold"]["decided_once"], nlohmann::json::array({"causes"}));
   EXPECT_EQ(summary["contact"]["holds_with"], "compensation of elbow_joint.eccentricity");
   EXPECT_NE(run.warnings.end(),
             std::find(run.warnings.begin(), run.warnings.end(), NotApplied(run.extra, false)));
@@ -144,6 +146,41 @@ TEST_F(ArmWithCause, IsEstimatedOnlyWhereTheProjectLetsIt) {
   EXPECT_THROW(Calibrate(Shown()), InputError);
 }
 
+// Without folds, the residuals before and after calibration are those of two models.
+TEST_F(ArmWithCause, TheGainWithoutFoldsIsOverTheNominalRobot) {
+  project_.calibration.extra = {.automatic = false, .names = {"elbow_joint.eccentricity"}};
+  const ContactRun run = CalibrateContacts(project_, {Table(Shown())}, {.folds = 0});
+  const ObservationFit& fit = run.calibrated.estimate.fit;
+  ASSERT_GT(run.model.robot.parameter_count(), run.uncalibrated.estimate.fit.values.robot.size());
+  EXPECT_THROW(LeftOf(run.model, run.observations, run.uncalibrated.estimate.fit.values),
+               std::invalid_argument);
+  ObservedValues nominal = run.uncalibrated.estimate.fit.values;
+  nominal.robot = Eigen::VectorXd::Zero(run.model.robot.parameter_count());
+  EXPECT_DOUBLE_EQ(
+      run.gain_in_sds,
+      GainInSds(run.model, run.observations, LeftOf(run.model, run.observations, nominal),
+                LeftOf(run.model, run.observations, fit.values), fit.spread));
+}
+
+// A pattern may concern a cause or a spring that a model of the run lacks.
+TEST_F(ArmWithCause, IsHeldWhereTheProjectHoldsIt) {
+  const ContactRun run = Calibrate(Shown());
+  ASSERT_EQ(run.extra, std::vector<std::string>{"elbow_joint.eccentricity"});
+  const std::filesystem::path folder = WriteCalibration(run);
+  project_.identifiability.hold = {"elbow_joint.eccentricity_cos", "elbow_joint.compliance_z"};
+  const ContactRun updated =
+      CalibrateContacts(project_, {Table(Shown())}, {.folds = 0, .prior = folder, .days = 0.0});
+  EXPECT_EQ(ValueOf(updated, "elbow_joint.eccentricity_cos"), 0.0);
+  EXPECT_NEAR(ValueOf(updated, "elbow_joint.eccentricity_sin"), kSize, 3e-4);
+  ASSERT_TRUE(updated.rigid_model.has_value());
+  const ContactRun anew = Calibrate(Shown());
+  EXPECT_EQ(anew.extra, run.extra);
+  EXPECT_EQ(ValueOf(anew, "elbow_joint.eccentricity_cos"), 0.0);
+  project_.identifiability.hold = {"elbow_joint.eccentricty_cos"};
+  ExpectInputError([&] { Calibrate(Shown()); },
+                   {"identifiability.hold", "did you mean 'elbow_joint.eccentricity_cos'?"});
+}
+
 TEST_F(ArmWithCause, NothingIsTakenWhereNothingIs) {
   const ContactRun run = Calibrate(q_);
   EXPECT_TRUE(run.extra.empty());
@@ -162,6 +199,9 @@ TEST_F(ArmWithCause, SpringsThatItHidesAreFoundBesideIt) {
   const ContactRun run = Calibrate(shown);
   EXPECT_EQ(run.extra, std::vector<std::string>{"shoulder_joint.hysteresis"});
   EXPECT_FALSE(run.model.robot.elasticity.torsion.empty());
+  const nlohmann::json summary = nlohmann::json::parse(MakeContactSummary(run));
+  const std::vector<std::string> both = {"elasticity", "causes"};
+  EXPECT_EQ(summary["contact"]["kfold"]["decided_once"], both);
 }
 
 TEST_F(ArmWithCause, SpringsThatTheProjectForbidsAreSaidWhereCausesStandForThem) {

@@ -2,6 +2,8 @@
 // A fixed arm whose tool a laser tracker sees. It is calibrated from a table.
 #include <fstream>
 
+#include <nlohmann/json.hpp>
+
 #include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/pipeline/contact_validation.hpp"
@@ -94,10 +96,16 @@ TEST_F(ArmWithTracker, JointsThatGiveWayAreFound) {
   EXPECT_LT(ContactRun::Judged(run.calibrated).rows[0].rms, 5e-4);
   EXPECT_GT(ContactRun::Judged(*run.geometric).rows[0].rms,
             2.0 * ContactRun::Judged(run.calibrated).rows[0].rms);
+  const auto decided_once = [](const ContactRun& of) {
+    return nlohmann::json::parse(MakeContactSummary(of))["contact"]["kfold"]["decided_once"];
+  };
+  EXPECT_EQ(decided_once(run), nlohmann::json::array({"elasticity"}));
   Project rigid = project_;
   rigid.elasticity.torsion.emplace();
   rigid.calibration.extra.automatic = false;  // otherwise causes would replace the springs
-  EXPECT_FALSE(CalibrateContacts(rigid, {Table(q_)}, {.folds = 5}).geometric);
+  const ContactRun held = CalibrateContacts(rigid, {Table(q_)}, {.folds = 5});
+  EXPECT_FALSE(held.geometric);
+  EXPECT_EQ(decided_once(held), nlohmann::json::array());
 }
 
 // The project has no markers. Its joint parameters are still restored, and so is which of them the

@@ -61,6 +61,20 @@ void AddRows(const ObservedRobot& model, const Observations& observations,
   }
 }
 
+/// Root mean square of each posture's residuals in units of the noise.
+Eigen::ArrayXd ErrorsByPosture(const ObservedRobot& model, const Observations& observations,
+                               const std::vector<Eigen::VectorXd>& left, const Spread& spread) {
+  Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(observations.posture_count());
+  Eigen::ArrayXd rows = squares;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const Observation& of = observations.all[i];
+    squares[of.posture] +=
+        (model.instrument(of.instrument).Weights(spread) * left[i]).squaredNorm();
+    rows[of.posture] += static_cast<double>(left[i].size());
+  }
+  return (squares / rows.max(1.0)).sqrt();
+}
+
 int CountTouches(const Observations& observations, int plate) {
   return static_cast<int>(
       std::count_if(observations.all.begin(), observations.all.end(),
@@ -197,17 +211,11 @@ double LargestError(const ObservedRobot& model, SourceUnit unit) {
 double GainInSds(const ObservedRobot& model, const Observations& observations,
                  const std::vector<Eigen::VectorXd>& before,
                  const std::vector<Eigen::VectorXd>& after, const Spread& spread) {
-  Eigen::VectorXd gain = Eigen::VectorXd::Zero(observations.posture_count());
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    const Observation& observation = observations.all[i];
-    const Eigen::MatrixXd weights = model.instrument(observation.instrument).Weights(spread);
-    gain[observation.posture] +=
-        (weights * before[i]).squaredNorm() - (weights * after[i]).squaredNorm();
-  }
+  const Eigen::ArrayXd gain = ErrorsByPosture(model, observations, before, spread) -
+                              ErrorsByPosture(model, observations, after, spread);
   const double mean = gain.mean();
   const auto count = static_cast<double>(gain.size());
-  const double sd =
-      std::sqrt((gain.array() - mean).square().sum() / std::max(1.0, count - 1.0) / count);
+  const double sd = std::sqrt((gain - mean).square().sum() / std::max(1.0, count - 1.0) / count);
   return mean / std::max(sd, 1e-300);
 }
 

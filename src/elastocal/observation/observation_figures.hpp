@@ -75,9 +75,11 @@ std::vector<Eigen::VectorXd> LeftAfterRegistration(const ObservedRobot& model,
 /// robot larger than 2 m), 5 degrees, 0.5 m/s^2, 20 pixels.
 double LargestError(const ObservedRobot& model, SourceUnit unit);
 
-/// Gain of `after` over `before`: mean over postures of the difference in squared error, divided by
-/// its standard deviation (about standard normal for many postures). Positive: `after` explains the
-/// observations better. Errors are in units of the noise in `spread`.
+/// Gain of `after` over `before`: mean over postures of the difference in root mean square error,
+/// divided by its standard deviation (about standard normal for many postures). Positive: `after`
+/// explains the observations better. Errors are in units of the noise in `spread`. Errors count,
+/// not their squares: in a single gross outlier, the squares of two models differ by more than in
+/// all other postures, but the errors only by as much as the predictions do.
 double GainInSds(const ObservedRobot& model, const Observations& observations,
                  const std::vector<Eigen::VectorXd>& before,
                  const std::vector<Eigen::VectorXd>& after, const Spread& spread);

@@ -203,6 +203,9 @@ ObservedValues NominalValues(const ObservedRobot& model, const Observations& obs
 
 std::vector<Eigen::VectorXd> LeftOf(const ObservedRobot& model, const Observations& observations,
                                     const ObservedValues& values) {
+  if (values.robot.size() != model.robot.parameter_count()) {
+    throw std::invalid_argument("LeftOf: the values are of another model of the robot");
+  }
   const std::vector<Sight> sights =
       SightsOf(model, observations, values, ObservedLoads(model, observations, values.robot));
   std::vector<Eigen::VectorXd> left;

@@ -23,11 +23,11 @@ std::set<int> MovingLinks(const RobotTree& tree, const ObservationSetup& setup) 
   return links;
 }
 
-/// Makes the parameters that match `patterns` one unknown: that of the first of them.
+/// Makes the parameters that match `patterns`, if any, one unknown: that of the first of them.
 void JoinUnknowns(const std::vector<std::string>& patterns, const ErrorModel& robot,
                   std::vector<int>& unknown) {
-  CheckPatterns(robot.parameters, patterns);
   const std::vector<int> joined = MatchParameters(robot.parameters, patterns);
+  if (joined.empty()) return;
   const Parameter& first = robot.parameters[joined.front()];
   for (int i : joined) {
     const Parameter& parameter = robot.parameters[i];
@@ -105,7 +105,6 @@ ObservedRobot MakeObservedRobot(const RobotTree& tree, const PlacementOptions& p
   }
   model.robot = MakeErrorModel(tree, {}, placement, elasticity);
   const std::vector<Parameter>& parameters = model.robot.parameters;
-  CheckPatterns(parameters, setup.hold);
   const std::vector<int> held = MatchParameters(parameters, setup.hold);
   model.unknown.assign(parameters.size(), -1);
   for (int i = 0; i < static_cast<int>(parameters.size()); ++i) {

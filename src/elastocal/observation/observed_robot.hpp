@@ -73,8 +73,9 @@ struct ObservedRobot {
 
 /// Makes the model of an observed robot. `torsion` and `bending` name the elastic joints.
 /// `corrections` are those of joints, of a root link that is held still and of loads
-/// (ObservableCorrections). Throws InputError for patterns that match nothing, and for parameters
-/// in common of different kinds.
+/// (ObservableCorrections). Patterns of the setup that match nothing have no effect here: they may
+/// concern springs or corrections of another model of the same robot. Throws InputError for
+/// parameters in common of different kinds.
 ObservedRobot MakeObservedRobot(const RobotTree& tree, const PlacementOptions& placement,
                                 const ObservationSetup& setup, const std::vector<int>& torsion,
                                 const std::vector<int>& bending,

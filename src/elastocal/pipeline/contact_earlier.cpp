@@ -75,11 +75,8 @@ ObservedRobot MakeRobotAfterEarlier(const EarlierContacts& earlier, const Projec
   ObservationSetup setup = tables.setup;
   setup.outlier_probability = project.calibration.outlier_probability;
   if (earlier.of_contacts) TakeSpread(earlier.contacts.calibrated.spread, setup.sources);
+  setup.hold = project.identifiability.hold;
   ObservedRobot model = MakeStoredRobot(earlier.stored, project, setup);
-  for (const std::string& pattern : project.identifiability.hold) {
-    if (!MatchParameters(model.robot.parameters, {pattern}).empty()) setup.hold.push_back(pattern);
-  }
-  if (!setup.hold.empty()) model = MakeStoredRobot(earlier.stored, project, setup);
   KeepObservedUnknowns(tables.observations, model);
   return model;
 }

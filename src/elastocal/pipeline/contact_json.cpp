@@ -217,6 +217,7 @@ nlohmann::ordered_json ContactJson(const ContactRun& run) {
     json["kfold"] = FiguresJson(run.model, run.calibrated.held_out.figures);
     json["kfold"]["folds"] = run.calibrated.held_out.folds;
     json["kfold"]["decided_once"] = Json::array();
+    if (run.springs_chosen) json["kfold"]["decided_once"].push_back("elasticity");
     if (run.without_causes) {
       json["kfold"]["decided_once"].push_back("causes");
       json["kfold"]["without_causes"] = FiguresJson(run.model, *run.without_causes);

@@ -7,9 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "elastocal/io/observation_table.hpp"
-#include "elastocal/math/input_error.hpp"
-#include "elastocal/mistakes/observed_corrections.hpp"
 #include "elastocal/mistakes/observed_faults.hpp"
 #include "elastocal/mistakes/observed_mistakes.hpp"
 #include "elastocal/observation/contact_result.hpp"
@@ -26,7 +23,6 @@ namespace elastocal {
 namespace {
 
 constexpr int kUsualFolds = 10;
-constexpr int kFewestObservedPostures = 8;  // tables and plates alone have 5 unknowns each
 
 std::string JoinNames(const std::vector<std::string>& names) {
   std::string text;
@@ -39,8 +35,8 @@ ContactOutcome Estimate(const ObservedRobot& model, const Observations& observat
   const ObservationFreedom freedom{.robot = robot};
   ContactOutcome outcome;
   outcome.estimate = EstimateObserved(model, observations, freedom);
-  outcome.in_sample =
-      MakeFigures(model, observations, LeftOf(model, observations, outcome.estimate.fit.values));
+  outcome.left = LeftOf(model, observations, outcome.estimate.fit.values);
+  outcome.in_sample = MakeFigures(model, observations, outcome.left);
   if (folds > 0) {
     outcome.held_out = CrossValidate(model, observations, freedom, folds, options.threads,
                                      robot ? options.progress : Progress());
@@ -131,6 +127,7 @@ bool TakeElasticity(const Project& project, const ContactRunOptions& options, in
     return false;
   }
   Take(std::move(*elastic), std::move(outcome), run);
+  run.springs_chosen = true;
   run.warnings.emplace_back(kTakenAsElastic);
   return true;
 }
@@ -184,6 +181,7 @@ bool GiveUpElasticity(const Project& project, const ContactRunOptions& options, 
   run.calibrated = std::move(*run.geometric);
   run.rigid_model.reset();
   run.geometric.reset();
+  run.springs_chosen = false;
   std::erase(run.warnings, kTakenAsElastic);
   return true;
 }
@@ -223,61 +221,6 @@ void ChooseBeyondGeometry(const Project& project, const ContactRunOptions& optio
   }
   TakeCauses(project, options, folds, run);
 }
-
-}  // namespace
-
-ObservedRobot MakeRobotOfProject(const Project& project, const ObservationTables& tables) {
-  ObservationSetup setup = tables.setup;
-  setup.hold = project.identifiability.hold;
-  setup.outlier_probability = project.calibration.outlier_probability;
-  const auto joints = [&](const std::optional<std::vector<std::string>>& patterns) {
-    return patterns ? MatchingJoints(project.tree, *patterns) : std::vector<int>();
-  };
-  try {
-    ObservedRobot model =
-        MakeObservedRobot(project.tree, project.placement, setup,
-                          joints(project.elasticity.torsion), joints(project.elasticity.bending));
-    KeepObservedUnknowns(tables.observations, model);
-    return model;
-  } catch (const InputError& error) {
-    throw InputError(project.file.string() +
-                     ": contact.common or identifiability.hold: " + error.what());
-  }
-}
-
-ContactStart StartContacts(const Project& project,
-                           const std::vector<std::filesystem::path>& recordings,
-                           const ContactRunOptions& options) {
-  ContactStart start;
-  std::optional<EarlierContacts>& earlier = start.earlier;
-  if (!options.prior.empty()) earlier = ReadPriorOfContacts(options.prior, project);
-  const bool feet_known = earlier && earlier->of_contacts;
-  ObservationTables tables =
-      ReadObservationTables(recordings, project, feet_known ? &earlier->contacts.feet : nullptr);
-  start.warnings = std::move(tables.warnings);
-  start.model = earlier ? MakeRobotAfterEarlier(*earlier, project, tables)
-                        : MakeRobotOfProject(project, tables);
-  start.observations = std::move(tables.observations);
-  for (const std::string& what :
-       CorrectObservations(options.accept, start.model, start.observations)) {
-    start.warnings.push_back("corrected on request: " + what);
-  }
-  const int postures = start.observations.posture_count();
-  if (postures < kFewestObservedPostures) {
-    throw InputError(JoinNames(start.observations.files) + ": " + std::to_string(postures) +
-                     " postures; at least " + std::to_string(kFewestObservedPostures) +
-                     " were expected");
-  }
-  if (earlier) {
-    for (std::string& text : StartFromEarlierContacts(*earlier, start.observations, project,
-                                                      options.days, start.model)) {
-      start.warnings.push_back(std::move(text));
-    }
-  }
-  return start;
-}
-
-namespace {
 
 /// Estimates what is beside the nominal robot, and finds mistakes in the tables. Returns the number
 /// of folds that the tables allow: none where there is a mistake, which would be held out as well.
@@ -333,8 +276,7 @@ ContactRun CalibrateContacts(const Project& project,
   }
   const ObservationFit& fit = run.calibrated.estimate.fit;
   const auto left = [&](const ContactOutcome& outcome) {
-    return folds > 0 ? outcome.held_out.left
-                     : LeftOf(run.model, run.observations, outcome.estimate.fit.values);
+    return folds > 0 ? outcome.held_out.left : outcome.left;
   };
   run.gain_in_sds = GainInSds(run.model, run.observations, left(run.uncalibrated),
                               left(run.calibrated), fit.spread);

@@ -51,6 +51,7 @@ ContactStart StartContacts(const Project& project,
 /// An estimate with its errors in sample and held out.
 struct ContactOutcome {
   ObservedEstimate estimate;
+  std::vector<Eigen::VectorXd> left;  ///< residual of each observation in sample, SI
   ObservationFigures in_sample;
   ObservationCrossValidation held_out;  ///< folds 0: not done
 };
@@ -62,6 +63,7 @@ struct ContactRun {
   ObservedRobot model;
   ContactOutcome uncalibrated;  ///< fit of quantities beside the robot and of sessions only
   ContactOutcome calibrated;
+  bool springs_chosen = false;     ///< all postures chose that joints of the model are elastic
   std::vector<std::string> extra;  ///< causes beyond geometry and springs that the model contains
   std::optional<CauseReport> causes;  ///< the study by which they were chosen, if there was one
   /// Where all postures chose causes: the errors (Judged) of the model without them.
@@ -95,7 +97,8 @@ struct ContactRun {
   bool deployable() const { return verdict.objections.empty(); }
 };
 
-/// The robot of the project, for tables of observations. Throws InputError as MakeObservedRobot.
+/// The robot of the project, for tables of observations. Throws InputError for patterns (hold,
+/// common) that match nothing in any model of the robot, and as MakeObservedRobot.
 ObservedRobot MakeRobotOfProject(const Project& project, const ObservationTables& tables);
 
 /// Calibrates a robot that touches tables or is measured by instruments while it stands on its feet

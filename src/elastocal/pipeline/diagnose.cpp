@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@
 #include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/known_places.hpp"
+#include "elastocal/pipeline/leave_out_touches.hpp"
 #include "elastocal/recorded/choose_elasticity.hpp"
 #include "elastocal/tables/json_text.hpp"
 
@@ -185,9 +187,17 @@ Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
   Diagnosis diagnosis;
   const Assumptions told = RecordedAssumptions(robot);
   if (project.contact) {
-    as_calibrated();
-    const ContactStart begin = StartContacts(
+    ContactStart begin = StartContacts(
         project, recordings, {.accept = told.accept, .prior = told.prior, .days = told.days});
+    // As calibrate does, before it chooses springs.
+    if (auto left_out = WithoutTouchesInTheAir(begin.model, begin.observations)) {
+      begin.observations = std::move(left_out->others);
+      diagnosis.warnings.push_back(left_out->text + "; left out, as by calibrate");
+    }
+    as_calibrated();
+    if (!begin.earlier) {
+      begin.model = MakeRobotOfProject(project, {begin.observations, begin.model.setup, {}});
+    }
     diagnosis.report =
         StudyObservedCauses(project, begin.model, begin.observations,
                             EstimateObserved(begin.model, begin.observations, {}).fit, seed);

@@ -67,24 +67,30 @@ std::string DescribeTouchesInTheAir(const ObservedRobot& model, const Observatio
       AreAsHigh(air) ? " (all as high: another table, or one that was moved?)" : "");
 }
 
-bool LeaveOutTouchesInTheAir(ContactRun& run) {
-  const std::vector<TouchInTheAir> air = FindTouchesInTheAir(run.model, run.observations);
-  if (air.empty()) return false;
-  Observations without = WithoutTouches(run.observations, air);
-  const std::vector<int> before = TouchesByPlate(run.model, run.observations);
-  const std::vector<int> after = TouchesByPlate(run.model, without);
-  bool many = false;
+std::optional<TouchesLeftOut> WithoutTouchesInTheAir(const ObservedRobot& model,
+                                                     const Observations& observations) {
+  const std::vector<TouchInTheAir> air = FindTouchesInTheAir(model, observations);
+  if (air.empty()) return std::nullopt;
+  TouchesLeftOut left_out{WithoutTouches(observations, air),
+                          DescribeTouchesInTheAir(model, observations, air)};
+  const std::vector<int> before = TouchesByPlate(model, observations);
+  const std::vector<int> after = TouchesByPlate(model, left_out.others);
   for (std::size_t plate = 0; plate < before.size(); ++plate) {
-    many = many || before[plate] - after[plate] > kMostInTheAir * before[plate];
+    left_out.many = left_out.many || before[plate] - after[plate] > kMostInTheAir * before[plate];
   }
-  const std::string text = DescribeTouchesInTheAir(run.model, run.observations, air);
-  run.observations = std::move(without);
-  if (many) {
-    run.wrong_rows = text +
+  return left_out;
+}
+
+bool LeaveOutTouchesInTheAir(ContactRun& run) {
+  std::optional<TouchesLeftOut> left_out = WithoutTouchesInTheAir(run.model, run.observations);
+  if (!left_out) return false;
+  run.observations = std::move(left_out->others);
+  if (left_out->many) {
+    run.wrong_rows = left_out->text +
                      ". Record them again, or delete these rows if nothing was touched; touches "
                      "of another table belong into a file of their own";
   } else {
-    run.warnings.push_back(text + "; left out: was there contact?");
+    run.warnings.push_back(left_out->text + "; left out: was there contact?");
   }
   return true;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,18 @@ namespace elastocal {
 std::string DescribeTouchesInTheAir(const ObservedRobot& model, const Observations& observations,
                                     const std::vector<TouchInTheAir>& air);
 
-/// Removes touches in the air (FindTouchesInTheAir) from the observations, and returns whether
+/// What is left without touches in the air.
+struct TouchesLeftOut {
+  Observations others;
+  std::string text;   ///< DescribeTouchesInTheAir
+  bool many = false;  ///< more than a quarter of the touches of a plate were in the air
+};
+
+/// Leaves out touches in the air (FindTouchesInTheAir); nothing where there are none.
+std::optional<TouchesLeftOut> WithoutTouchesInTheAir(const ObservedRobot& model,
+                                                     const Observations& observations);
+
+/// Removes touches in the air (WithoutTouchesInTheAir) from the observations, and returns whether
 /// there were any. A few of them give a warning. More than a quarter of a plate's touches give the
 /// objection `wrong_rows`, as with outliers: too few are left to tell which are right.
 bool LeaveOutTouchesInTheAir(ContactRun& run);

@@ -13,6 +13,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/observation/observation_fit.hpp"
 #include "elastocal/pipeline/contact_earlier.hpp"
+#include "elastocal/pipeline/contact_run.hpp"
 #include "elastocal/planning/posture_information.hpp"
 #include "elastocal/robot/zero_offset.hpp"
 #include "elastocal/tables/json_text.hpp"
@@ -76,15 +77,9 @@ Observations NominalObservations(const Project& project, const ObservationSetup&
 /// The robot of the project, with its nominal observations.
 ObservedRobot RobotOfProject(const Project& project, const ObservationSetup& setup,
                              const std::vector<Candidate>& candidates, Observations& observations) {
-  const auto joints = [&](const std::optional<std::vector<std::string>>& patterns) {
-    return patterns ? MatchingJoints(project.tree, *patterns) : std::vector<int>();
-  };
-  ObservedRobot model =
-      MakeObservedRobot(project.tree, project.placement, setup, joints(project.elasticity.torsion),
-                        joints(project.elasticity.bending));
-  observations = NominalObservations(project, setup, model, candidates);
-  KeepObservedUnknowns(observations, model);
-  return model;
+  observations =
+      NominalObservations(project, setup, MakeRobotOfProject(project, {{}, setup, {}}), candidates);
+  return MakeRobotOfProject(project, {observations, setup, {}});
 }
 
 /// Standard deviations of changes of the joints' parameters; 0 for other joints.
