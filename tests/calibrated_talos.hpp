@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -13,6 +14,7 @@
 #include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/project/project.hpp"
+#include "elastocal/robot/corrections.hpp"
 #include "elastocal/runtime/compensator.hpp"
 #include "tests/run_program.hpp"
 #include "tests/runtime_calibration.hpp"
@@ -37,14 +39,18 @@ class CalibratedTalos : public testing::Test {
     estimate.nominal = stored.nominal;
     estimate.recording = "drawn <at> random -- twice";
     estimate.model = "full";
-    const StoredRobot robot = RestoreRobot(project_, stored);
-    for (const Parameter& parameter : robot.model.parameters) {
-      const auto value = stored.joint_errors.find(parameter.name);
-      if (value == stored.joint_errors.end()) continue;
-      estimate.parameters.push_back({.name = parameter.name,
-                                     .unit = UnitName(parameter.unit),
+    const auto add = [&](const std::string& name, ParameterUnit unit) {
+      const auto value = stored.joint_errors.find(name);
+      if (value == stored.joint_errors.end()) return;
+      estimate.parameters.push_back({.name = name,
+                                     .unit = UnitName(unit),
                                      .value = value->second,
                                      .sd = std::max(0.1 * std::abs(value->second), 1e-12)});
+    };
+    const StoredRobot robot = RestoreRobot(project_, stored);
+    for (const Parameter& parameter : robot.model.parameters) add(parameter.name, parameter.unit);
+    for (const Correction& cause : PossibleCorrections(project_.tree, std::nullopt)) {
+      add(cause.name, cause.unit);
     }
     std::filesystem::create_directories(scratch_.path() / "out");
     scratch_.Write("out/calibration.yaml", MakeCalibrationYaml(estimate));
