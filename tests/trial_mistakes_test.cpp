@@ -153,6 +153,11 @@ TEST_F(TrialMistakes, AClusterThatShakesInHeldOutTrialsOfFewerChainsContradicts)
     EXPECT_NE(found[0].find("held-out trials of " + chains.front()), std::string::npos) << found[0];
     EXPECT_NE(found[0].find("contradict those of the estimate"), std::string::npos) << found[0];
   }
+  // A little less than ten times the error of the group, but more than that of its cluster.
+  const std::vector<std::string> found = contradictions(shaken("FOREARM", 0.004));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find("held-out trials of cluster FOREARM contradict"), std::string::npos)
+      << found[0];
 }
 
 // Each of the two trials fits alone, because each leaves out one of the two markers as an outlier.
