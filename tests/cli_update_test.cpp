@@ -52,7 +52,7 @@ TEST_F(Program, APriorMakesAFewPosturesEnough) {
   EXPECT_EQ(alone.exit_code, 2) << "--days without --prior";
 }
 
-// The name of the file does not matter.
+// The name of the file does not matter, only what is in it.
 TEST_F(Program, APriorFromTheSameRecordingCountsTwice) {
   ASSERT_EQ(Calibrate(project_, recording_).exit_code, 0);
   const std::string copy = (scratch_.path() / "copy.csv").string();
@@ -68,6 +68,8 @@ TEST_F(Program, APriorFromTheSameRecordingCountsTwice) {
   EXPECT_TRUE(twice(copy));
   EXPECT_TRUE(twice(recording_));
   EXPECT_FALSE(twice(today));
+  std::filesystem::copy_file(today, recording_, std::filesystem::copy_options::overwrite_existing);
+  EXPECT_FALSE(twice(recording_));
 }
 
 /// Makes an entry of a covariance larger than the variances allow.

@@ -158,6 +158,40 @@ TEST_F(Pipeline, TheUrdfIsValidatedWithoutSprings) {
   EXPECT_GT(run.urdf->metrics.rmse_3d, 5.0 * run.transfer.calibrated.metrics.rmse_3d);
 }
 
+// The errors of the joints undo most of what its springs do, so that the nominal robot is good and
+// the URDF, which has the former without the latter, is not.
+TEST_F(Pipeline, AUrdfAloneThatIsWorseThanNominalIsNotBetter) {
+  project_.elasticity.torsion = {"*"};
+  const ErrorModel model = MakeProjectModel(project_, {});
+  const BaseParameters base = FindBaseParameters(model, project_.identifiability);
+  const auto bent = [&](const Eigen::VectorXd& delta) {
+    Recording recording = MakeSyntheticRecording(model, delta, {.postures = 40, .marker_sd = 0.0});
+    recording.markers = PredictedPositions(model, recording, delta, {});
+    return recording;
+  };
+  Eigen::VectorXd delta = Eigen::VectorXd::Zero(model.parameter_count());
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    if (model.parameters[i].kind == ParameterKind::kTorsion) delta[i] = 2e-4;
+  }
+  const Eigen::VectorXd alike =
+      Calibrate(model, bent(delta), base, ModelKind::kGeometric, project_.calibration).delta;
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    if (!IsExternal(model.parameters[i].kind) && !IsElastic(model.parameters[i].kind)) {
+      delta[i] = -alike[i];
+    }
+  }
+  const Recording recording = bent(delta);
+  WritePostureTable(table_, recording, project_.tree);
+  const CalibrationResult result =
+      Calibrate(model, recording, base, ModelKinds(model).back(), project_.calibration);
+  std::ofstream(scratch_.path() / "calibration.yaml")
+      << MakeCalibrationYaml(result, "there.csv", ZeroOffsets::kOrigin);
+  const ValidationRun run = ValidateCalibration(project_, scratch_.path(), table_);
+  EXPECT_TRUE(run.better());
+  EXPECT_TRUE(run.urdf_worse());
+  EXPECT_EQ(ValidationStatus(run), "not better");
+}
+
 TEST_F(Pipeline, InspectsEveryChainAndTheWhole) {
   const RobotInspection inspection = InspectRobot(project_);
   ASSERT_EQ(inspection.chains.size(), 3u);

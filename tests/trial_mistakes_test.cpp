@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mistakes of a laboratory in trials: they are named, and undone on request.
 
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -112,6 +113,51 @@ TEST_F(TrialMistakes, AFaultOfTheOnlyTrialIsNamedByTheHeldOutOne) {
   Recording together = held_out;
   together.trials[0].chains = {project_.chains[0].name, project_.chains[1].name};
   EXPECT_EQ(contradictions(recording, together).size(), 1u);
+}
+
+// Held-out trials may show fewer chains than any trial of the estimate. No fault of the log and no
+// other place of the cluster explains that its markers shake.
+TEST_F(TrialMistakes, AClusterThatShakesInHeldOutTrialsOfFewerChainsContradicts) {
+  const ErrorModel model = MakeErrorModel(project_.tree, project_.markers, project_.placement);
+  const BaseParameters base = FindBaseParameters(model, project_.identifiability);
+  const Eigen::VectorXd truth = DrawErrors(model, base.kept, {{ParameterKind::kTheta, 0.01}}, 1);
+  Recording recording = AsTrial(model, truth, "swing", TrialKind::kCalibration, 1);
+  recording.trials[0].chains = {"arm", "wrist"};
+  const ModelComparison comparison = CompareModels(
+      Calibrate(model, recording, base, ModelKind::kGeometric, {}), model, recording, base, {});
+  const auto contradictions = [&](const Recording& held_out) {
+    return FindContradictions(project_, {model, base}, recording, held_out, comparison,
+                              JudgeOnTrials(comparison, held_out, {}).table);
+  };
+  const auto shaken = [&](const std::string& cluster, double amplitude) {
+    Recording held_out = AsTrial(model, truth, "check", TrialKind::kRandom, 2);
+    for (const MarkerCluster& one : project_.clusters) {
+      if (one.name != cluster) continue;
+      for (const int m : one.markers) {
+        for (int i = 0; i < held_out.posture_count(); ++i) {
+          held_out.markers.block<1, 3>(i, 3 * m) +=
+              amplitude * Eigen::RowVector3d(std::sin(1.7 * i), std::sin(2.9 * i + 1.0),
+                                             std::sin(2.3 * i + 2.0));
+        }
+      }
+    }
+    return held_out;
+  };
+  EXPECT_TRUE(contradictions(shaken("TOOL", 0.0)).empty());
+  for (const std::vector<std::string>& chains :
+       {std::vector<std::string>{"arm"}, {"wrist"}, {"arm", "wrist"}}) {
+    Recording held_out = shaken("TOOL", 0.012);
+    held_out.trials[0].chains = chains;
+    const std::vector<std::string> found = contradictions(held_out);
+    ASSERT_EQ(found.size(), 1u) << chains.front();
+    EXPECT_NE(found[0].find("held-out trials of " + chains.front()), std::string::npos) << found[0];
+    EXPECT_NE(found[0].find("contradict those of the estimate"), std::string::npos) << found[0];
+  }
+  // A little less than ten times the error of the group, but more than that of its cluster.
+  const std::vector<std::string> found = contradictions(shaken("FOREARM", 0.004));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NE(found[0].find("held-out trials of cluster FOREARM contradict"), std::string::npos)
+      << found[0];
 }
 
 // Each of the two trials fits alone, because each leaves out one of the two markers as an outlier.

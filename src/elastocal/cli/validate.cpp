@@ -62,7 +62,7 @@ std::string VerdictText(const ValidationRun& run) {
   if (!run.mistakes.empty()) {
     return "Verdict: the recording has a mistake or contradicts the calibration; see below.\n\n";
   }
-  if (!run.converged() || !run.plausible() || !run.better()) {
+  if (!run.converged() || !run.plausible() || !run.better() || run.urdf_worse()) {
     return "Verdict: do not deploy; see below.\n\n";
   }
   const auto error = [](const Refit& refit) { return Millimetres(refit.metrics_all.rmse_3d, 3); };
@@ -129,6 +129,13 @@ std::vector<std::string> ErrorsOf(const ValidationRun& run) {
   }
   if (!run.better()) {
     errors.emplace_back("calibrated is no better than uncalibrated here: do not deploy");
+  } else if (run.urdf_worse()) {
+    errors.push_back(fmt::format(
+        "the calibrated URDF alone is worse than the uncalibrated one here: {:.3g} mm against "
+        "{:.3g} mm; only with compensation of elasticity is the calibrated robot better ({:.3g} "
+        "mm): do not deploy the URDF without it",
+        1e3 * run.urdf->metrics_all.rmse_3d, 1e3 * run.transfer.uncalibrated.metrics_all.rmse_3d,
+        1e3 * run.transfer.calibrated.metrics_all.rmse_3d));
   }
   return errors;
 }
@@ -145,8 +152,8 @@ CommandResult ValidateByMarkers(const ValidateOptions& options, const Project& p
           .text = RunText(run),
           .warnings = run.warnings,
           .errors = ErrorsOf(run),
-          .fine = run.converged() && run.better() && run.plausible() && run.mistakes.empty() &&
-                  run.not_judged.empty()};
+          .fine = run.converged() && run.better() && !run.urdf_worse() && run.plausible() &&
+                  run.mistakes.empty() && run.not_judged.empty()};
 }
 
 void RefuseOtherKindsOptions(const ValidateOptions& options, const Project& project) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include <fmt/format.h>
@@ -137,13 +136,14 @@ Recording JoinedWithTimes(const Recording& recording, const Recording& held_out)
   return all;
 }
 
-std::string DescribeContrast(const Contrast& contrast) {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "the model errs by %.3g mm on them, and by %.3g mm on those of the estimate; "
-                "something differs between the recordings",
-                1e3 * contrast.held_out, 1e3 * contrast.fitted);
-  return "held-out trials of " + contrast.group + " contradict those of the estimate: " + text;
+/// Describes the contrast of a group, or that of a cluster where the former says too little.
+std::string DescribeContrast(const Contrasts& contrasts) {
+  const bool by_group = contrasts.of_groups.ratio() > kContradicted;
+  const Contrast& contrast = by_group ? contrasts.of_groups : contrasts.of_clusters;
+  return fmt::format(
+      "held-out trials of {}{} contradict those of the estimate: the model errs by {:.3g} mm on "
+      "them, and by {:.3g} mm on those of the estimate; something differs between the recordings",
+      by_group ? "" : "cluster ", contrast.name, 1e3 * contrast.held_out, 1e3 * contrast.fitted);
 }
 
 ErrorTable FittedTable(const Project& project, const Recording& recording,
@@ -153,11 +153,11 @@ ErrorTable FittedTable(const Project& project, const Recording& recording,
 }
 
 /// How much worse held-out trials are predicted than those of the estimate are fitted.
-Contrast ContrastOf(const Project& project, const Recording& recording,
-                    const ModelComparison& comparison, const ErrorTable& fitted,
-                    const ErrorTable& held_out_table) {
-  return LargestContrast(fitted, held_out_table, SeenClusters(project, recording),
-                         comparison.largest_kind());
+Contrasts ContrastsOf(const Project& project, const Recording& recording,
+                      const ModelComparison& comparison, const ErrorTable& fitted,
+                      const ErrorTable& held_out_table) {
+  return LargestContrasts(fitted, held_out_table, SeenClusters(project, recording),
+                          comparison.largest_kind());
 }
 
 /// Trials of the estimate and held-out ones, and one fit of all of them.
@@ -259,7 +259,7 @@ std::string LeaveOutBriefExchange(const Project& project, const Recording& recor
                                   const ModelComparison& comparison,
                                   const ErrorTable& held_out_table, Recording& held_out) {
   const ErrorTable fitted = FittedTable(project, recording, comparison);
-  if (!ContrastOf(project, recording, comparison, fitted, held_out_table).suspicious()) return "";
+  if (!ContrastsOf(project, recording, comparison, fitted, held_out_table).suspicious()) return "";
   const std::optional<LabelExchange> found =
       ExchangeWithinCluster(project, recording, held_out, comparison);
   if (!found || found->of_estimate) return "";
@@ -293,8 +293,8 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
                                             const ModelComparison& comparison,
                                             const ErrorTable& held_out_table) {
   const ErrorTable fitted = FittedTable(project, recording, comparison);
-  const Contrast contrast = ContrastOf(project, recording, comparison, fitted, held_out_table);
-  if (!contrast.suspicious()) return {};
+  const Contrasts contrasts = ContrastsOf(project, recording, comparison, fitted, held_out_table);
+  if (!contrasts.suspicious()) return {};
   const std::string mistake =
       MistakeInHeldOut(project, held_out, robot.knocks, comparison, held_out_table);
   if (!mistake.empty()) return {mistake};
@@ -317,7 +317,7 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
     return {kContradict + words.text +
             OrInThoseOfTheEstimate(faults.front(), all.recording, recording)};
   }
-  if (!(std::max(contrast.ratio(), contrast.largest_of_clusters) > kContradicted)) return {};
+  if (!(contrasts.largest() > kContradicted)) return {};
   const std::vector<Knock> knocks = KnocksOfAll(project, robot, all.recording);
   if (!knocks.empty()) {
     const double left = MarkerError(all.fit, all.recording, all.options);
@@ -329,8 +329,7 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
                        MovedSuspects(SeenClusters(project, recording), fitted, held_out_table,
                                      comparison.largest_kind(), all.recording));
   if (!moved.empty()) return {kContradict + moved};
-  if (!(contrast.ratio() > kContradicted)) return {};
-  return {DescribeContrast(contrast)};
+  return {DescribeContrast(contrasts)};
 }
 
 std::string TellScaleOfTrials(const Project& project, const RecordedModel& robot,

@@ -11,36 +11,56 @@
 namespace elastocal {
 namespace {
 
-/// Whether all chains of a group (TrialGroups) are also in another one.
-bool IsWithin(const std::string& group, const std::string& other) {
-  std::istringstream chains(group);
-  for (std::string chain; std::getline(chains, chain, '+');) {
-    if (("+" + other + "+").find("+" + chain + "+") == std::string::npos) return false;
-  }
-  return true;
+std::vector<std::string> ChainsOf(const std::string& group) {
+  std::vector<std::string> chains;
+  std::istringstream text(group);
+  for (std::string chain; std::getline(text, chain, '+');) chains.push_back(chain);
+  return chains;
 }
 
-/// RMSE over all observations of the groups within `group`: limbs that a held-out trial moves
-/// together may have been measured one after the other.
-double RmseWithin(const ErrorTable& table, const std::string& group, ModelKind kind) {
+/// Number of the chains of a group (TrialGroups) that are also in another one.
+std::ptrdiff_t CountShared(const std::string& group, const std::string& other) {
+  const std::vector<std::string> others = ChainsOf(other);
+  return std::ranges::count_if(ChainsOf(group), [&](const std::string& chain) {
+    return std::ranges::find(others, chain) != others.end();
+  });
+}
+
+/// RMSE over all observations of the groups whose names fulfil `which`; 0 where there are none.
+template <typename Which>
+double RmseOver(const ErrorTable& table, ModelKind kind, Which which) {
   double squares = 0.0;
   double count = 0.0;
   for (const ErrorTableRow& row : table.groups) {
     const auto metrics = row.metrics.find(kind);
-    if (metrics == row.metrics.end() || !IsWithin(row.group, group)) continue;
+    if (metrics == row.metrics.end() || metrics->second.observations == 0 || !which(row.group)) {
+      continue;
+    }
     squares += metrics->second.observations * std::pow(metrics->second.rmse_3d, 2);
     count += metrics->second.observations;
   }
   return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
+/// RMSE of the groups within `group`: limbs that a held-out trial moves together may have been
+/// measured one after the other. Where none is within it, that of the groups that share a chain
+/// with it: limbs that were measured together may be held out alone.
+double RmseLike(const ErrorTable& table, const std::string& group, ModelKind kind) {
+  const double within = RmseOver(table, kind, [&](const std::string& other) {
+    return CountShared(other, group) == std::ssize(ChainsOf(other));
+  });
+  if (within > 0.0) return within;
+  return RmseOver(table, kind,
+                  [&](const std::string& other) { return CountShared(other, group) > 0; });
+}
+
 Contrast LargestOfGroups(const ErrorTable& fitted, const ErrorTable& held_out, ModelKind kind) {
-  Contrast largest{"", 1.0, 0.0, 0.0, 0.0};
+  Contrast largest{"", 1.0, 0.0, 0.0};
   for (const ErrorTableRow& row : held_out.groups) {
     const auto metrics = row.metrics.find(kind);
-    const Contrast contrast{row.group, RmseWithin(fitted, row.group, kind),
-                            RmseWithin(fitted, row.group, ModelKind::kUncalibrated),
-                            metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d, 0.0};
+    const Contrast contrast{row.group, RmseLike(fitted, row.group, kind),
+                            RmseLike(fitted, row.group, ModelKind::kUncalibrated),
+                            metrics == row.metrics.end() ? 0.0 : metrics->second.rmse_3d};
     if (contrast.fitted > 0.0 && contrast.ratio() > largest.ratio()) largest = contrast;
   }
   return largest;
@@ -65,15 +85,14 @@ double RmseOfMarkers(const ErrorTable& table, const std::vector<int>& markers, M
   return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
-/// The largest ratio of a cluster, since a neck is a small part of its group.
-double LargestRatioOfClusters(const ErrorTable& fitted, const ErrorTable& held_out,
-                              const std::vector<LabelCluster>& clusters, ModelKind kind) {
-  double largest = 0.0;
+Contrast LargestOfClusters(const ErrorTable& fitted, const ErrorTable& held_out,
+                           const std::vector<LabelCluster>& clusters, ModelKind kind) {
+  Contrast largest{"", 1.0, 0.0, 0.0};
   for (const LabelCluster& cluster : clusters) {
-    const Contrast contrast{"", RmseOfMarkers(fitted, cluster.markers, kind),
+    const Contrast contrast{cluster.name, RmseOfMarkers(fitted, cluster.markers, kind),
                             RmseOfMarkers(fitted, cluster.markers, ModelKind::kUncalibrated),
-                            RmseOfMarkers(held_out, cluster.markers, kind), 0.0};
-    if (contrast.fitted > 0.0) largest = std::max(largest, contrast.ratio());
+                            RmseOfMarkers(held_out, cluster.markers, kind)};
+    if (contrast.fitted > 0.0 && contrast.ratio() > largest.ratio()) largest = contrast;
   }
   return largest;
 }
@@ -82,13 +101,14 @@ double LargestRatioOfClusters(const ErrorTable& fitted, const ErrorTable& held_o
 
 double Contrast::ratio() const { return held_out / std::max(fitted, kBestExpected * uncalibrated); }
 
-bool Contrast::suspicious() const { return std::max(ratio(), largest_of_clusters) > kSuspicious; }
+double Contrasts::largest() const { return std::max(of_groups.ratio(), of_clusters.ratio()); }
 
-Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out,
-                         const std::vector<LabelCluster>& clusters, ModelKind kind) {
-  Contrast contrast = LargestOfGroups(fitted, held_out, kind);
-  contrast.largest_of_clusters = LargestRatioOfClusters(fitted, held_out, clusters, kind);
-  return contrast;
+bool Contrasts::suspicious() const { return largest() > kSuspicious; }
+
+Contrasts LargestContrasts(const ErrorTable& fitted, const ErrorTable& held_out,
+                           const std::vector<LabelCluster>& clusters, ModelKind kind) {
+  return {LargestOfGroups(fitted, held_out, kind),
+          LargestOfClusters(fitted, held_out, clusters, kind)};
 }
 
 std::vector<MovedSuspect> MovedSuspects(const std::vector<LabelCluster>& clusters,

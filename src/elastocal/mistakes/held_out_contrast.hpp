@@ -16,20 +16,26 @@ inline constexpr double kSuspicious = 3.0;  ///< ratio to the error on the trial
 /// expected to be as good in motion, which statics does not describe.
 inline constexpr double kBestExpected = 0.03;
 
-/// A group of chains whose held-out trials the largest model predicts worse than it fits those of
-/// the estimate.
+/// Errors of the largest model on markers in the trials of the estimate and in held-out ones, and
+/// that of the uncalibrated robot in the former, m.
 struct Contrast {
-  std::string group;
-  double fitted = 0.0, uncalibrated = 0.0, held_out = 0.0;  // m
-  double largest_of_clusters = 0.0;                         // largest ratio of a cluster
+  std::string name;  ///< group of chains (TrialGroups) or cluster; empty: none
+  double fitted = 0.0, uncalibrated = 0.0, held_out = 0.0;
   double ratio() const;
+};
+
+/// The largest contrast of a group of chains, and that of a cluster, since a neck is a small part
+/// of its group.
+struct Contrasts {
+  Contrast of_groups, of_clusters;
+  double largest() const;   ///< the larger ratio
   bool suspicious() const;  ///< a ratio of more than three
 };
 
-/// The largest contrast of the groups and of the clusters, since a neck is a small part of its
-/// group.
-Contrast LargestContrast(const ErrorTable& fitted, const ErrorTable& held_out,
-                         const std::vector<LabelCluster>& clusters, ModelKind kind);
+/// A held-out group is compared with the fitted groups within it, or else with those that share a
+/// chain with it.
+Contrasts LargestContrasts(const ErrorTable& fitted, const ErrorTable& held_out,
+                           const std::vector<LabelCluster>& clusters, ModelKind kind);
 
 /// Clusters that may be displaced in some held-out trials, because their error there exceeds three
 /// times that in the trials of the estimate; the worst first. In `all`, the trials of the estimate

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -43,10 +44,19 @@ std::vector<PartOfRecording> TrialsOf(const Recording& recording) {
 
 /// Factor by which the error exceeds the residual, because the fit adapts parameters. A body tells
 /// six numbers in each posture (position and attitude), and its markers add at most six parameters.
-/// Infinite where there are as many parameters as numbers.
+/// The root link of each posture of a trial is six unknowns, which a footing that stands still
+/// through several postures tells for each of them; that of a table is six. Infinite where there
+/// are as many parameters as numbers.
 double OfFreedom(const CalibrationResult& fit, const Recording& part) {
-  double rows = -6.0 * part.posture_count();  // six for the waist of each posture
-  std::map<int, double> of_markers;           // by body
+  double rows = -6.0 * (fit.placement.empty() ? 1 : part.posture_count());
+  std::set<int> footings;
+  for (int i = 0; i < std::ssize(fit.placement.footing); ++i) {
+    if (fit.placement.footing[Size(i)] < 0 || fit.tied[Size(i)] == 0) continue;
+    footings.insert(fit.placement.footing[Size(i)]);
+    rows += 6.0;
+  }
+  rows -= 6.0 * static_cast<double>(footings.size());
+  std::map<int, double> of_markers;  // by body
   for (const BodyObservation& body : SelectAll(fit.model, part).bodies) {
     const auto told = static_cast<double>(std::min<Eigen::Index>(6, body.size()));
     rows += told;

@@ -122,9 +122,7 @@ struct Work {
 void WarnOfSameRecording(Work& work) {
   const std::filesystem::path calibration = FindCalibrationFiles(work.options.prior).calibration;
   if (!IsOwnRecording(calibration, InputFiles(work.given, work.recordings))) return;
-  const std::string warning = CountsTwice(calibration.string());
-  std::vector<std::string>& warnings = work.run.warnings;
-  if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(warning);
+  work.run.warnings.push_back(CountsTwice(calibration.string()));
 }
 
 /// Decides what is estimated. Elasticity and causes are chosen by the data or (not in the paper)
@@ -211,7 +209,8 @@ void CrossValidateRun(int folds, Work& work) {
 }
 
 /// Computes errors on trials for validation. Labels that are exchanged there for a while are left
-/// out; other contradictions are faults.
+/// out; other contradictions are faults. Trials on a leg that the estimate does not know contradict
+/// nothing (UnknownStance).
 void JudgeOnOtherTrials(Work& work) {
   CalibrationRun& run = work.run;
   const RepeatedTrials repeated = FindRepeatedTrials(work.measured);
@@ -226,10 +225,13 @@ void JudgeOnOtherTrials(Work& work) {
     left_out = LeaveOutBriefExchange(work.project, work.recording(), run.comparison,
                                      run.held_out->table, validation);
   } while (!left_out.empty());
-  if (run.faults.empty()) {
-    run.faults = FindContradictions(work.project, work.robot, work.recording(), validation,
-                                    run.comparison, run.held_out->table);
-  }
+  if (!run.faults.empty()) return;
+  const Recording known = WithKnownStance(work.project, work.measured);
+  if (known.posture_count() == 0) return;
+  const bool all = known.posture_count() == validation.posture_count();
+  run.faults = FindContradictions(
+      work.project, work.robot, work.recording(), known, run.comparison,
+      all ? run.held_out->table : JudgeOnTrials(run.comparison, known, work.settings()).table);
 }
 
 /// Judges whether the result can be trusted, as a rigid URDF and with its elasticity.
@@ -258,7 +260,9 @@ void JudgeRun(Work& work) {
                                 run.faults.end());
   Append(UnconfirmedCorrections(work.options.accept, work.project, work.as_recorded),
          run.verdict.objections);
-  run.coverage = FindCoverage(work.project, work.measured);
+  ObservationMask predicted;
+  if (run.held_out) predicted = Predicted(*run.held_out, run.comparison.largest_kind());
+  run.coverage = FindCoverage(work.project, work.measured, run.held_out ? &predicted : nullptr);
   const bool whole = std::ranges::all_of(
       run.coverage, [](const auto& of) { return of.calibrated || of.refused.empty(); });
   if (whole) {  // else the chain's objection says so

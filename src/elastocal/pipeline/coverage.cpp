@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "elastocal/calibration/observations.hpp"
+#include "elastocal/math/numbers.hpp"
 
 namespace elastocal {
 namespace {
@@ -122,9 +123,66 @@ std::string MovingTrial(const Project& project, const Chain& chain, const Record
   return moving;
 }
 
+/// The recording in which markers that were not predicted are not seen.
+Recording WithoutUnpredicted(Recording recording, const ObservationMask& predicted) {
+  for (int i = 0; i < recording.posture_count(); ++i) {
+    for (int m = 0; m < recording.marker_count(); ++m) {
+      if (!predicted(i, m)) recording.markers.block<1, 3>(i, 3 * m).setConstant(kNaN);
+    }
+  }
+  return recording;
+}
+
+bool IsUnusable(const TrialSummary& trial) {
+  return trial.trial.kind == TrialKind::kCalibration && !trial.refused.empty();
+}
+
+/// The trials for calibration that cannot be used, with the reasons; empty: none.
+std::string RefusedTrials(const Measurements& measured) {
+  std::string refused;
+  for (const TrialSummary& trial : measured.trials) {
+    if (!IsUnusable(trial)) continue;
+    refused += (refused.empty() ? "trial " : "; trial ") + trial.trial.name + ": " + trial.refused;
+  }
+  return refused;
+}
+
+/// Whether an earlier calibration knows the springs of the leg that ends in this link.
+bool KnownEarlier(const Project& project, int link) {
+  return std::ranges::any_of(project.chains, [&](const Chain& chain) {
+    return chain.tip_link == link &&
+           std::ranges::any_of(project.calibration.earlier.names, [&](const std::string& name) {
+             return name.starts_with(chain.name + ".compliance_");
+           });
+  });
+}
+
+/// Links of UnknownStance, with the name of a trial that stands there.
+std::map<int, std::string> UnknownLegs(const Project& project, const Measurements& measured) {
+  std::map<int, std::string> unknown;
+  if (!project.elasticity.base) return unknown;
+  const std::map<int, std::string> known = StandsAloneOn(measured.calibration);
+  for (const auto& [link, trial] : StandsAloneOn(measured.validation)) {
+    if (!KnownEarlier(project, link)) unknown.emplace(link, trial);
+  }
+  for (const TrialSummary& trial : measured.trials) {
+    const std::vector<int>& support = trial.trial.support;
+    if (IsUnusable(trial) && support.size() == 1) {
+      unknown.emplace(support.front(), trial.trial.name);
+    }
+  }
+  std::erase_if(unknown, [&](const auto& stance) {  // a held root link has no springs
+    return known.contains(stance.first) || project.tree.links[stance.first].body == 0;
+  });
+  return unknown;
+}
+
 }  // namespace
 
-std::vector<ChainCoverage> FindCoverage(const Project& project, const Measurements& measured) {
+std::vector<ChainCoverage> FindCoverage(const Project& project, const Measurements& measured,
+                                        const ObservationMask* predicted) {
+  const Recording judged =
+      predicted ? WithoutUnpredicted(measured.validation, *predicted) : measured.validation;
   std::vector<ChainCoverage> coverage;
   for (const Chain& chain : project.chains) {
     std::vector<std::string> markers;
@@ -138,8 +196,7 @@ std::vector<ChainCoverage> FindCoverage(const Project& project, const Measuremen
     ChainCoverage of{chain.name,
                      Shows(measured.calibration, chain.name, markers,
                            ExercisesEachJoint(project, measured.calibration, chain)),
-                     Shows(measured.validation, chain.name, markers,
-                           ExercisesEachJoint(project, measured.validation, chain)),
+                     Shows(judged, chain.name, markers, ExercisesEachJoint(project, judged, chain)),
                      {},
                      {},
                      MovingTrial(project, chain, measured.calibration),
@@ -157,25 +214,26 @@ std::vector<ChainCoverage> FindCoverage(const Project& project, const Measuremen
 }
 
 std::vector<std::string> UnknownStance(const Project& project, const Measurements& measured) {
+  const std::string refused = RefusedTrials(measured);
   std::vector<std::string> unknown;
-  if (!project.elasticity.base) return unknown;
-  const std::map<int, std::string> known = StandsAloneOn(measured.calibration);
-  std::map<int, std::string> shown = StandsAloneOn(measured.validation);
-  std::string refused;
-  for (const TrialSummary& trial : measured.trials) {
-    if (trial.trial.kind != TrialKind::kCalibration || trial.refused.empty()) continue;
-    refused += (refused.empty() ? "trial " : "; trial ") + trial.trial.name + ": " + trial.refused;
-    const std::vector<int>& support = trial.trial.support;
-    if (support.size() == 1) shown.emplace(support.front(), trial.trial.name);
-  }
-  if (refused.empty()) return unknown;
-  for (const auto& [link, trial] : shown) {
-    if (known.contains(link)) continue;
+  for (const auto& [link, trial] : UnknownLegs(project, measured)) {
     unknown.push_back("how the robot bends on " + project.tree.links[link].name +
                       " alone is not known, on which it stands in trial " + trial +
-                      ": no trial for calibration that can be used shows it (" + refused + ")");
+                      ": no trial for calibration that can be used shows it" +
+                      (refused.empty() ? "" : " (" + refused + ")"));
   }
   return unknown;
+}
+
+Recording WithKnownStance(const Project& project, const Measurements& measured) {
+  const std::map<int, std::string> unknown = UnknownLegs(project, measured);
+  std::vector<int> postures;
+  for (int i = 0; i < measured.validation.posture_count(); ++i) {
+    const std::vector<int>& support =
+        measured.validation.trials[measured.validation.trial[i]].support;
+    if (support.size() != 1 || !unknown.contains(support.front())) postures.push_back(i);
+  }
+  return SelectPostures(measured.validation, postures);
 }
 
 void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict) {

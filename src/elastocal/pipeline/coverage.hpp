@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocal/calibration/outliers.hpp"
 #include "elastocal/project/project.hpp"
 #include "elastocal/recorded/measurements.hpp"
 #include "elastocal/validation/verdict.hpp"
@@ -17,7 +18,8 @@ struct ChainCoverage {
   /// or that exercise all of its joints with other chains. If false, its joints stay as in the
   /// URDF, except those that it shares with other chains or on which the robot stands.
   bool calibrated = false;
-  bool judged = false;  ///< markers on the chain were seen in trials for validation
+  /// Markers on the chain were seen in trials for validation, and could be predicted.
+  bool judged = false;
   /// Trials for its calibration that cannot be used, with the reason.
   std::vector<std::string> refused;
   /// a trial for validation that is said to exercise it; empty: none
@@ -29,14 +31,21 @@ struct ChainCoverage {
   std::vector<std::string> unseen;
 };
 
-/// Coverage of the chains that carry markers, in the project's order.
-std::vector<ChainCoverage> FindCoverage(const Project& project, const Measurements& measured);
+/// Coverage of the chains that carry markers, in the project's order. `predicted` says which
+/// observations of the trials for validation the calibrated robot predicts; null: all.
+std::vector<ChainCoverage> FindCoverage(const Project& project, const Measurements& measured,
+                                        const ObservationMask* predicted = nullptr);
 
 /// Objections, one for each link on which the robot stands alone in a trial for calibration that
 /// cannot be used, or in a trial for validation, but in no trial that is used for the estimate. The
 /// springs of that leg's ankle then stay at the prior, even if other trials calibrate its chain.
-/// Empty where legs are rigid.
+/// Empty where legs are rigid. A leg whose springs an earlier calibration knows
+/// (CalibrationOptions::earlier) needs no trial for calibration, unless that cannot be used.
 std::vector<std::string> UnknownStance(const Project& project, const Measurements& measured);
+
+/// The trials for validation without those that stand on a link of UnknownStance alone. The robot
+/// that was estimated says nothing of these, so that they contradict nothing.
+Recording WithKnownStance(const Project& project, const Measurements& measured);
 
 /// Adds an objection for each chain that stays uncalibrated because its trials cannot be used (a
 /// user who records a chain expects its calibration), and for each chain that only trials for

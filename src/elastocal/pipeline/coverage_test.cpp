@@ -107,8 +107,19 @@ TEST_F(CoverageOfChains, StandingOnALegWhoseTrialsAreRefusedIsNotKnown) {
   measured.validation = Shown("right_leg");
   measured.validation.trials[0].support = {left};
   EXPECT_EQ(UnknownStance(project_, measured).size(), 1u);
+  measured.trials.clear();  // all trials can be used
+  EXPECT_EQ(UnknownStance(project_, measured).front(),
+            "how the robot bends on left_sole alone is not known, on which it stands in trial "
+            "right_leg: no trial for calibration that can be used shows it");
+  EXPECT_EQ(WithKnownStance(project_, measured).posture_count(), 0);
+  Project updated = project_;
+  updated.calibration.earlier.names = {"left_leg.compliance_x"};
+  EXPECT_TRUE(UnknownStance(updated, measured).empty());
   measured.calibration.trials[0].support = {left};  // this trial can be used
   EXPECT_TRUE(UnknownStance(project_, measured).empty());
+  EXPECT_EQ(WithKnownStance(project_, measured).posture_count(), 1);
+  measured.validation.trials[0].support = {FindLink(project_.tree, "torso")};
+  EXPECT_TRUE(UnknownStance(project_, measured).empty());  // held, so that no leg bends
   measured.calibration = {};
   Project rigid = project_;
   rigid.elasticity.base = false;
@@ -129,6 +140,19 @@ TEST_F(CoverageOfChains, WhatIsNotJudgedIsSaidWhereOthersAre) {
   EXPECT_TRUE(verdict.objections.empty());
   ASSERT_EQ(verdict.remarks.size(), 1u);
   EXPECT_NE(verdict.remarks[0].find("left_arm"), std::string::npos);
+}
+
+TEST_F(CoverageOfChains, AChainThatCannotBePredictedIsNotJudged) {
+  Measurements measured;
+  measured.calibration = Shown("left_arm");
+  measured.validation = Shown("left_arm");
+  for (const bool known : {true, false}) {
+    const ObservationMask predicted =
+        ObservationMask::Constant(1, measured.validation.marker_count(), known);
+    for (const ChainCoverage& of : FindCoverage(project_, measured, &predicted)) {
+      EXPECT_EQ(of.judged, known && of.chain == "left_arm") << of.chain;
+    }
+  }
 }
 
 // Markers of the hand were lost. The joints that only they show are named.

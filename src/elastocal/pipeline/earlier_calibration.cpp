@@ -334,9 +334,6 @@ std::vector<std::string> StartFromEarlier(const std::filesystem::path& calibrati
   CheckGauge(calibration, project);
   const EarlierFit fit = FitAfterEarlier(calibration, days, measured, seed, {}, project);
   std::vector<std::string> warnings;
-  if (fit.stored.recording == measured.calibration.source) {
-    warnings.push_back(CountsTwice(fit.stored.source));
-  }
   for (std::string& text : DescribeForgotten(fit.check, fit.stored.source)) {
     warnings.push_back(std::move(text));
   }

@@ -181,7 +181,7 @@ void CompareWithPrediction(const Project& project, const std::filesystem::path& 
   run.shown = (run.urdf ? *run.urdf : run.transfer.calibrated).metrics_all.rmse_3d;
   run.own_recording =
       WarnOfOwnRecording(run.calibration_file, InputFiles(project, {recording}), run.warnings);
-  if (!run.own_recording && !run.as_predicted() && run.better()) {
+  if (!run.own_recording && !run.as_predicted() && run.better() && !run.urdf_worse()) {
     run.warnings.push_back(fmt::format(
         "the {} errs by {:.2g} mm, where its calibration predicted {:.2g} mm: the robot has "
         "changed, or moves where it was not calibrated; `elastocal check` says whether a joint "
@@ -198,6 +198,11 @@ bool ValidationRun::converged() const {
 
 bool ValidationRun::better() const {
   return transfer.calibrated.metrics_all.rmse_3d < transfer.uncalibrated.metrics_all.rmse_3d;
+}
+
+bool ValidationRun::urdf_worse() const {
+  constexpr double kWorse = 1.05;  // as in JudgeDeployment
+  return urdf && urdf->metrics_all.rmse_3d > kWorse * transfer.uncalibrated.metrics_all.rmse_3d;
 }
 
 bool ValidationRun::plausible() const {
@@ -261,7 +266,7 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
 std::string ValidationStatus(const ValidationRun& run) {
   if (!run.converged()) return "not converged";
   if (!run.plausible()) return "implausible";
-  return run.better() ? "better" : "not better";
+  return run.better() && !run.urdf_worse() ? "better" : "not better";
 }
 
 std::string MakeValidationJson(const ValidationRun& run) {

@@ -41,6 +41,9 @@ struct ValidationRun {
   bool converged() const;
   /// Whether the calibrated robot has a smaller error than the uncalibrated one, outliers included.
   bool better() const;
+  /// Whether the URDF alone, which many users deploy, errs by more than 5 % more than the
+  /// uncalibrated robot, outliers included; false if frozen.
+  bool urdf_worse() const;
   /// Whether the error of the calibrated robot is less than twice that expected of a robot that was
   /// never calibrated. Otherwise recording, project and calibration do not belong together.
   bool plausible() const;
@@ -71,9 +74,10 @@ struct TransferOptions {
 /// which it contradicts the calibration (FindTransferFaults).
 ///
 /// `calibration` is the folder that calibrate wrote to, or its calibration.yaml. `recording` is a
-/// posture table or a recording folder; its trials for validation are used as well. Throws
-/// InputError for files that cannot be read, for a calibration of a robot with other nominal
-/// geometry than the project's, and for positions of markers where nothing is fitted.
+/// posture table or a recording folder. Its trials for validation are judged where none is for
+/// calibration; else a warning names them. Throws InputError for files that cannot be read, for a
+/// calibration of a robot with other nominal geometry than the project's, and for positions of
+/// markers where nothing is fitted.
 ValidationRun ValidateCalibration(const Project& given, const std::filesystem::path& calibration,
                                   const std::filesystem::path& recording,
                                   const TransferOptions& options = {});

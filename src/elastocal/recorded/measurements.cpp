@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "elastocal/calibration/closed_chains.hpp"
@@ -13,6 +14,7 @@
 #include "elastocal/io/recording_folder.hpp"
 #include "elastocal/io/waist_truth.hpp"
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/measurement/trial_names.hpp"
 
 namespace elastocal {
 namespace {
@@ -99,12 +101,25 @@ int NumberAmong(const std::vector<TrialSummary>& trials, const Trial& trial) {
   throw InputError(message);
 }
 
+/// Warns of trials for validation that are left out beside those for calibration.
+void WarnOfUnusedTrials(RecordingFolder& read) {
+  const Recording& others = read.validation;
+  const std::set<int> used(others.trial.begin(), others.trial.end());
+  if (used.empty()) return;
+  read.findings.push_back(
+      "not used here: " + TrialNames(others, {used.begin(), used.end()}) +
+      ", because beside trials of kind 'calibration' those of other kinds are left out; to use "
+      "them, name them alone in the experiment.yaml of another folder");
+}
+
 Measurements ReadFolders(const std::vector<fs::path>& folders, const Project& project,
                          ReadFor purpose) {
   RecordingFolder read = ReadRecordingFolders(folders, project);
   if (read.calibration.posture_count() == 0) {
     if (purpose == ReadFor::kCalibration) RefuseWithoutCalibration(read);
     std::swap(read.calibration, read.validation);
+  } else if (purpose == ReadFor::kAnyUse) {
+    WarnOfUnusedTrials(read);
   }
   Measurements measured;
   for (Recording* recording : {&read.calibration, &read.validation}) {

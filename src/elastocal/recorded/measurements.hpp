@@ -32,7 +32,7 @@ struct Measurements {
 enum class ReadFor {
   kCalibration,  ///< trials of kind `calibration` are needed; the other kinds are kept apart
   /// All kinds of trials are accepted. If none is of kind `calibration`, the others become
-  /// `calibration`.
+  /// `calibration`; else a warning names the others.
   kAnyUse,
 };
 

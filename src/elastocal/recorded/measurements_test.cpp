@@ -56,6 +56,27 @@ TEST_F(MeasurementsTest, ValidationTrialsAreNotEstimatedFrom) {
   EXPECT_EQ(ReadMeasurements(project_, {folder_.path()}).calibration.posture_count(), 8);
 }
 
+// Trials for validation are not judged beside those for calibration, and this is said.
+TEST_F(MeasurementsTest, UnusedTrialsAreNamed) {
+  for (const char* ending : {".tsv", ".csv"}) {
+    std::filesystem::copy_file(folder_.path() / (std::string("a") + ending),
+                               folder_.path() / (std::string("b") + ending));
+  }
+  const std::string trial = ", chain: left_leg, support: [right_sole], ";
+  folder_.Write("experiment.yaml", "trials: [{name: one, kind: calibration" + trial +
+                                       "markers: a.tsv, joints: a.csv}, {name: two, kind: random" +
+                                       trial + "markers: b.tsv, joints: b.csv}]");
+  const auto says = [&](ReadFor purpose) {
+    const Measurements measured = ReadMeasurements(project_, {folder_.path()}, purpose);
+    EXPECT_EQ(measured.calibration.posture_count(), 8);
+    return std::ranges::any_of(measured.warnings, [](const std::string& warning) {
+      return warning.starts_with("not used here: two, because beside trials of kind 'calibration'");
+    });
+  };
+  EXPECT_TRUE(says(ReadFor::kAnyUse));
+  EXPECT_FALSE(says(ReadFor::kCalibration));
+}
+
 // Each of the two recordings has its own order of markers.
 TEST_F(MeasurementsTest, MarkersAreMatchedByName) {
   WriteExperiment("calibration");

@@ -15,9 +15,10 @@
 namespace elastocal {
 namespace {
 
-constexpr double kMisplaced = 0.02;     // m: beyond errors of a robot and of markers
-constexpr double kLeftUnshifted = 0.6;  // largest share of the misfit that is left
-constexpr int kMostShifted = 3;         // rows
+constexpr double kMisplaced = 0.02;        // m: beyond errors of a robot and of markers
+constexpr double kMisplacedShare = 0.015;  // share of the robot's size, if that is smaller
+constexpr double kLeftUnshifted = 0.6;     // largest share of the misfit that is left
+constexpr int kMostShifted = 3;            // rows
 constexpr int kLeastShiftedRows = 4;
 constexpr int kMostSearched = 2000;  // rows of a long table that are searched, its first ones
 
@@ -25,7 +26,9 @@ constexpr int kMostSearched = 2000;  // rows of a long table that are searched, 
 class ShiftSearch {
  public:
   ShiftSearch(const ErrorModel& model, const Recording& recording)
-      : recording_(recording), rows_(std::min(recording.posture_count(), kMostSearched)) {
+      : recording_(recording),
+        rows_(std::min(recording.posture_count(), kMostSearched)),
+        misplaced_(std::min(kMisplaced, kMisplacedShare * RobotSize(model.tree))) {
     ErrorModel at_origin = model;
     at_origin.T_ref_waist = Transform::Identity();
     const Geometry geometry =
@@ -40,7 +43,7 @@ class ShiftSearch {
     std::optional<RowShift> best;
     if (rows_ < 2 * kLeastShiftedRows) return best;
     const int last_quarter = rows_ - std::max(rows_ / 4, kLeastShiftedRows);
-    if (Typical(Errors(last_quarter, 0, Place(last_quarter, 0))) <= kMisplaced) return best;
+    if (Typical(Errors(last_quarter, 0, Place(last_quarter, 0))) <= misplaced_) return best;
     for (int rows = -kMostShifted; rows <= kMostShifted; ++rows) {
       if (rows == 0) continue;
       for (const int begin : {0, rows_ / 4, rows_ / 2, last_quarter}) {
@@ -115,7 +118,7 @@ class ShiftSearch {
     shift.before = Typical({as_is.begin() + shift.from, as_is.end()});
     shift.after = Typical({shifted.begin() + shift.from, shifted.end()});
     const double head = Typical({as_is.begin(), as_is.begin() + shift.from});
-    if (!(shift.before > kMisplaced) || !(shift.after <= kLeftUnshifted * shift.before) ||
+    if (!(shift.before > misplaced_) || !(shift.after <= kLeftUnshifted * shift.before) ||
         head > kLeftUnshifted * shift.before) {
       return std::nullopt;
     }
@@ -124,7 +127,7 @@ class ShiftSearch {
 
   /// The row at which the sum of errors (unshifted before it, shifted from it on) is smallest;
   /// before it also the rows that fit neither way, whose joints are the lost ones.
-  static int FirstShifted(const std::vector<double>& as_is, const std::vector<double>& shifted) {
+  int FirstShifted(const std::vector<double>& as_is, const std::vector<double>& shifted) const {
     double sum = 0.0, least = 0.0;
     std::size_t first = 0;
     for (std::size_t i = 0; i < as_is.size(); ++i) {
@@ -134,12 +137,13 @@ class ShiftSearch {
         first = i + 1;
       }
     }
-    while (first > 0 && as_is[first - 1] > kMisplaced) --first;
+    while (first > 0 && as_is[first - 1] > misplaced_) --first;
     return static_cast<int>(first);
   }
 
   const Recording& recording_;
   int rows_;
+  double misplaced_;  ///< m
   /// Nominal markers in the root link's frame, by the joints of each row.
   std::vector<Eigen::Matrix3Xd> nominal_;
 };

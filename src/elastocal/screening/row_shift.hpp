@@ -20,10 +20,10 @@ struct RowShift {
 };
 
 /// Finds the shift of at most three rows that explains a table best. The root link is placed best;
-/// from some posture on, the nominal robot's markers are off by at least 20 mm, and by less than
-/// 0.6 of that with the rows shifted back, while the postures before fit as they are. The shift may
-/// begin in the first three quarters of the table. A suspicion is no proof. Nothing for a recording
-/// of trials.
+/// from some posture on, the nominal robot's markers are off by at least 20 mm (1.5 % of RobotSize
+/// for a small robot), and by less than 0.6 of that with the rows shifted back, while the postures
+/// before fit as they are. The shift may begin in the first three quarters of the table. A
+/// suspicion is no proof. Nothing for a recording of trials.
 std::optional<RowShift> FindRowShift(const ErrorModel& model, const Recording& recording);
 
 /// Postures whose markers belong to no row of the table, ascending.

@@ -114,6 +114,38 @@ TEST_F(TableCheckTest, RowsThatAreShiftedAreToldAndUndone) {
   }
 }
 
+// A robot of a tenth of the size, such as a hand, moves its markers by a tenth.
+TEST_F(TableCheckTest, RowsOfASmallRobotThatAreShiftedAreTold) {
+  constexpr double kScale = 0.1;
+  Biped small = robot_.biped;
+  for (Joint& joint : small.tree.joints) joint.T_parent_child.translation() *= kScale;
+  for (Link& link : small.tree.links) link.T_body_link.translation() *= kScale;
+  for (Marker& marker : small.markers) marker.p_link_marker *= kScale;
+  const ErrorModel model = MakeErrorModel(small.tree, small.markers, {}, robot_.model.elasticity);
+  Recording table = table_;
+  Random random(6);
+  Eigen::VectorXd truth = Eigen::VectorXd::Zero(model.parameter_count());
+  for (int i = 0; i < model.parameter_count(); ++i) {
+    const Parameter& parameter = model.parameters[Size(i)];
+    if (parameter.kind == ParameterKind::kWaistPose || IsElastic(parameter.kind)) continue;
+    truth[i] = random.Normal(parameter.unit == ParameterUnit::kRadian ? 0.01 : kScale * 2e-3);
+  }
+  const Geometry geometry = ApplyErrors(model, truth);
+  for (int i = 0; i < table.posture_count(); ++i) {
+    table.markers.row(i) =
+        MarkerPositions(model, geometry, table.q.row(i).transpose()).reshaped().transpose();
+  }
+  EXPECT_FALSE(FindRowShift(model, table));
+  for (const bool free_root : {false, true}) {
+    Recording shifted = table;
+    shifted.free_root = free_root;
+    shifted.q.bottomRows(29) = table.q.topRows(29);
+    const std::optional<RowShift> shift = FindRowShift(model, shifted);
+    ASSERT_TRUE(shift);
+    EXPECT_EQ(shift->rows, 1);
+  }
+}
+
 TEST_F(TableCheckTest, AShiftOfRowsIsSaidWithItsLine) {
   EXPECT_EQ(DescribeShift({.rows = 1}, table_),
             "markers belong to the joint positions of the next row");

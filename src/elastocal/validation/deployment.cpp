@@ -19,7 +19,11 @@ Deployment ChooseDeployment(const ModelComparison& comparison, const CrossValida
                             const ErrorTable* table) {
   Deployment deployment;
   const bool on_trials = table != nullptr && !table->mean_rmse_3d.empty();
-  const bool on_folds = !on_trials && validation.folds > 0;
+  const auto predicted = [&](ModelKind kind) {
+    return std::isfinite(validation.metrics[static_cast<int>(kind)].rmse_3d);
+  };
+  const bool on_folds = !on_trials && validation.folds > 0 && predicted(ModelKind::kUncalibrated) &&
+                        predicted(ModelKind::kGeometric);
   deployment.judged_on =
       on_trials ? "held-out trials" : (on_folds ? "held-out postures" : "the fit");
   const auto rmse = [&](ModelKind kind) {

@@ -23,7 +23,8 @@ struct Deployment {
 };
 
 /// Chooses the geometry of the URDF. It is judged by held-out trials if there are any (`table` is
-/// not null or empty), else by the folds of the cross-validation, else by the fit itself.
+/// not null or empty), else by the folds of the cross-validation, else by the fit itself. Trials or
+/// folds of which nothing could be predicted judge nothing.
 Deployment ChooseDeployment(const ModelComparison& comparison, const CrossValidation& validation,
                             const ErrorTable* table);
 

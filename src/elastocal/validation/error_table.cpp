@@ -21,7 +21,7 @@ ErrorMetrics Pooled(const ErrorMetrics& a, const ErrorMetrics& b) {
                        ? std::sqrt((squares(a) + squares(b)) / pooled.observations)
                        : std::numeric_limits<double>::quiet_NaN();
   pooled.rmse_coordinate = pooled.rmse_3d / std::sqrt(3.0);
-  pooled.maximum = std::max(a.maximum, b.maximum);
+  pooled.maximum = std::fmax(a.maximum, b.maximum);  // NaN where nothing was counted
   return pooled;
 }
 

@@ -90,6 +90,10 @@ HeldOut JudgeLargestOnTrials(const ModelComparison& comparison, const Recording&
   return Judge(comparison, {comparison.largest_kind()}, recording, options);
 }
 
+ObservationMask Predicted(const HeldOut& held_out, ModelKind kind) {
+  return held_out.predictions[static_cast<int>(kind)].distances.array().isFinite();
+}
+
 double WaistError(const Placement& predicted, const std::vector<std::optional<Transform>>& truth) {
   std::vector<std::size_t> free, standing;
   for (std::size_t i = 0; i < truth.size() && i < predicted.footing.size(); ++i) {

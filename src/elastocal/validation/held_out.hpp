@@ -30,6 +30,9 @@ HeldOut JudgeOnTrials(const ModelComparison& comparison, const Recording& record
 HeldOut JudgeLargestOnTrials(const ModelComparison& comparison, const Recording& recording,
                              const CalibrationOptions& options);
 
+/// Which observations a model predicts: those that are seen where the root link can be placed.
+ObservationMask Predicted(const HeldOut& held_out, ModelKind kind);
+
 /// Error of the waist in postures on one foot, m: root mean square distance between the true origin
 /// of the root link and the one that the model predicts from the support foot. `predicted` must be
 /// made with FootingBy::kFootMarkers. Where the model's frame lies in the waist is a convention, so

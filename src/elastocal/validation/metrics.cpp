@@ -30,6 +30,7 @@ ErrorMetrics ComputeMetrics(const Eigen::MatrixXd& distances, const ObservationM
   }
   metrics.rmse_3d = metrics.observations > 0 ? std::sqrt(total / metrics.observations) : kNone;
   metrics.rmse_coordinate = metrics.rmse_3d / std::sqrt(3.0);
+  if (metrics.observations == 0) metrics.maximum = kNone;
   return metrics;
 }
 

@@ -14,7 +14,7 @@ namespace elastocal {
 struct ErrorMetrics {
   double rmse_3d = 0.0;          ///< RMS distance between measured and predicted positions
   double rmse_coordinate = 0.0;  ///< RMS difference of a coordinate: rmse_3d / sqrt(3)
-  double maximum = 0.0;          ///< largest distance
+  double maximum = 0.0;          ///< largest distance; as the others NaN without observations
   int observations = 0;
   Eigen::VectorXd marker_rmse_3d;  ///< by marker; NaN for a marker without observation
 };

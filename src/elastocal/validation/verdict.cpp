@@ -150,7 +150,13 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
       verdict.remarks.push_back(std::to_string(validation.unconverged) +
                                 " fits of the cross-validation have not converged");
     }
-    if (validation.not_predicted > 0) {
+    const auto largest = static_cast<std::size_t>(comparison.largest_kind());
+    if (!std::isfinite(validation.metrics[largest].rmse_3d)) {
+      verdict.remarks.emplace_back(
+          "no held-out posture could be predicted, because the root link could not be placed "
+          "there: "
+          "the errors are those of the fit, which judge little");
+    } else if (validation.not_predicted > 0) {
       verdict.remarks.push_back(
           std::to_string(validation.not_predicted) +
           " held-out observations could not be predicted: their marker is in no other fold, the "
@@ -176,7 +182,10 @@ void JudgeDeployment(const Deployment& deployment, double expected_error, Verdic
                                  ", where one that was never " + "calibrated should err by some " +
                                  Number(1e3 * expected_error, "mm") + " (the prior)." + kAdvice);
   }
-  if (deployment.judged_on == "the fit" || deployment.urdf < deployment.uncalibrated) return;
+  const bool judged = std::isfinite(deployment.urdf) && std::isfinite(deployment.uncalibrated);
+  if (!judged || deployment.judged_on == "the fit" || deployment.urdf < deployment.uncalibrated) {
+    return;
+  }
   const bool worse = deployment.urdf > kWorse * deployment.uncalibrated;
   (worse ? verdict.objections : verdict.remarks)
       .push_back("on " + deployment.judged_on + " the calibrated robot description is " +
@@ -219,6 +228,13 @@ void JudgePostures(const Eigen::MatrixXd& distances, const ObservationMask& used
 }
 
 void JudgeHeldOut(const ErrorTable& table, ModelKind model, ModelKind urdf, Verdict& verdict) {
+  for (const TrialErrors& trial : table.trials) {
+    const auto errors = trial.metrics.find(model);
+    if (errors == trial.metrics.end() || std::isfinite(errors->second.rmse_3d)) continue;
+    verdict.remarks.push_back("trial " + trial.trial +
+                              " for validation is not judged: the root link could be placed in "
+                              "none of its postures. Were its markers seen?");
+  }
   for (const ErrorTableRow& row : table.groups) {
     const auto calibrated = row.metrics.find(model);
     if (calibrated == row.metrics.end() || !std::isfinite(calibrated->second.rmse_3d)) continue;

@@ -36,9 +36,9 @@ void LeaveOutConsequences(Verdict& verdict);
 
 /// Judges the URDF alone. Adds an objection if its error exceeds that of the uncalibrated robot by
 /// more than 5 % on data that were not used for it, and a remark if it is no smaller: there is
-/// nothing to correct. Adds an objection if its error exceeds twice the expected error of a robot
-/// that was never calibrated (ExpectedError, m): to be better than an even worse robot is not
-/// enough.
+/// nothing to correct. Errors that are not finite say nothing. Adds an objection if its error
+/// exceeds twice the expected error of a robot that was never calibrated (ExpectedError, m): to be
+/// better than an even worse robot is not enough.
 void JudgeDeployment(const Deployment& deployment, double expected_error, Verdict& verdict);
 
 /// Judges single postures in the fit. A posture is gross if the root mean square of its `distances`
@@ -52,7 +52,8 @@ void JudgePostures(const Eigen::MatrixXd& distances, const ObservationMask& used
 /// Judges the calibrated model `model` by held-out trials. Adds an objection for each group of
 /// chains whose markers it predicts worse than the uncalibrated robot (by more than 5 %). Adds a
 /// remark for each group that it predicts worse than a simpler model (by 1 %), or where the URDF
-/// alone (`urdf`) is no better than the uncalibrated robot.
+/// alone (`urdf`) is no better than the uncalibrated robot, and for each trial of which nothing
+/// could be predicted.
 void JudgeHeldOut(const ErrorTable& table, ModelKind model, ModelKind urdf, Verdict& verdict);
 
 }  // namespace elastocal

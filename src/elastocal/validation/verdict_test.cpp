@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "elastocal/validation/verdict.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -49,6 +50,20 @@ class VerdictTest : public ::testing::Test {
 TEST_F(VerdictTest, NothingToSay) {
   EXPECT_TRUE(Judged().objections.empty());
   EXPECT_TRUE(Judged().remarks.empty());
+}
+
+TEST_F(VerdictTest, FoldsThatPredictNothingDoNotJudge) {
+  EXPECT_EQ(ChooseDeployment(comparison_, validation_, nullptr).judged_on, "held-out postures");
+  for (ErrorMetrics& metrics : validation_.metrics) {
+    metrics.rmse_3d = std::numeric_limits<double>::quiet_NaN();
+  }
+  validation_.not_predicted = 180;
+  const Deployment deployment = ChooseDeployment(comparison_, validation_, nullptr);
+  EXPECT_EQ(deployment.judged_on, "the fit");
+  EXPECT_TRUE(std::isfinite(deployment.urdf));
+  ASSERT_EQ(Judged().remarks.size(), 1u);
+  EXPECT_EQ(Judged().remarks[0].find("no held-out posture could be predicted"), 0u)
+      << Judged().remarks[0];
 }
 
 TEST_F(VerdictTest, NoConvergence) {
@@ -156,6 +171,15 @@ TEST(JudgeDeployment, ObjectsToAUrdfThatIsWorse) {
   EXPECT_TRUE(verdict.objections.empty());
 }
 
+TEST(JudgeDeployment, SaysNothingWithoutNumbers) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Verdict verdict;
+  JudgeDeployment({.judged_on = "held-out postures", .uncalibrated = nan, .urdf = nan}, 8e-3,
+                  verdict);
+  EXPECT_TRUE(verdict.objections.empty());
+  EXPECT_TRUE(verdict.remarks.empty());
+}
+
 ErrorTable HeldOutTable(const std::map<ModelKind, double>& rmse) {
   ErrorTableRow row;
   row.group = "leg_left";
@@ -217,6 +241,26 @@ TEST(JudgeHeldOut, ObjectsToWhatErrsNoLessThanTheUncalibratedRobot) {
   EXPECT_NE(verdict.objections[0].find("1.1 mm"), std::string::npos) << verdict.objections[0];
   ASSERT_EQ(verdict.remarks.size(), 1u);  // the URDF alone is worse than nominal
   EXPECT_NE(verdict.remarks[0].find("URDF alone"), std::string::npos) << verdict.remarks[0];
+}
+
+TEST(JudgeHeldOut, NamesTrialsOfWhichNothingIsPredicted) {
+  const auto trial = [](const char* name, double distance) {
+    return ComputeTrialErrors(
+        {.trial = name,
+         .group = "arm",
+         .markers = {0},
+         .distances = {{ModelKind::kFull, Eigen::MatrixXd::Constant(2, 1, distance)}}});
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const ErrorTable table = MakeErrorTable({trial("seen", 1e-3), trial("lost", nan)});
+  EXPECT_TRUE(std::isnan(table.trials[1].metrics.at(ModelKind::kFull).maximum));
+  EXPECT_EQ(table.groups[0].metrics.at(ModelKind::kFull).maximum, 1e-3);
+  Verdict verdict;
+  JudgeHeldOut(table, ModelKind::kFull, ModelKind::kGeometric, verdict);
+  ASSERT_EQ(verdict.remarks.size(), 1u);
+  EXPECT_EQ(verdict.remarks[0],
+            "trial lost for validation is not judged: the root link could be placed in none of its "
+            "postures. Were its markers seen?");
 }
 
 TEST(JudgeHeldOut, SaysNothingWithoutObservations) {
