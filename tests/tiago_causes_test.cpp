@@ -68,15 +68,22 @@ TEST_F(TiagoCauses, HysteresisOfTheWristAndTwistOfTheColumnHelpOnAnotherDay) {
   EXPECT_LT(with, 2.1e-3);
 }
 
-// By default, everything is decided anew in each fold, including the causes.
+// By default, everything is decided anew in each fold, including springs and causes. A fold that
+// chooses no springs errs by far more than the whole recording does on another day: folds foretell
+// too much.
 TEST_F(TiagoCauses, TenFoldsForetellTheErrorOfAnotherDay) {
   const Project project = ProjectWith("auto");
   CalibrationRun run = CalibrateExperiment(project, {training_}, {.threads = 2});
   ASSERT_EQ(run.cross_validation.folds, 10);
   const double foretold = run.cross_validation.metrics[static_cast<int>(ModelKind::kFull)].rmse_3d;
   const double found = OnAnotherDay(project, run).rmse_3d;
-  EXPECT_NEAR(foretold, found, 0.15 * found);
-  EXPECT_NEAR(foretold, 2.338e-3, 5e-5);  // docs/accuracy.md
+  const auto k = static_cast<std::size_t>(ModelKind::kFull);
+  const auto interval =
+      IntervalOfRmse(run.cross_validation.distances[k], run.cross_validation.unit_of);
+  ASSERT_TRUE(interval);
+  EXPECT_GT(found, interval->low);
+  EXPECT_LT(found, foretold);
+  EXPECT_NEAR(foretold, 3.575e-3, 5e-5);  // docs/accuracy.md
   // The twist of the column is plotted against the position of a sliding joint.
   const nlohmann::ordered_json pictures = CausePicturesJson(*run.causes);
   const auto twist = std::ranges::find_if(pictures, [](const auto& picture) {
