@@ -193,6 +193,34 @@ TEST_F(Simulate, AMatchedTruthIsWhatCalibrateFinds) {
   EXPECT_TRUE(summary.at("knocks").empty());
 }
 
+// A reversed sign spoils the alignment of the clocks, unless it is known before that.
+TEST_F(Simulate, CheckAlignsClocksWithWhatItIsToldToAccept) {
+  const std::string project = SourceFile("tests/robots/arm6_project.yaml").string();
+  const std::string folder = Folder("reversed"), out = Folder("out");
+  ASSERT_EQ(
+      RunProgram("simulate " + project + " -o " + folder + " --seed 3 --trials calibration --quiet")
+          .exit_code,
+      0);
+  std::istringstream log(ReadFile(folder + "/arm.csv"));
+  std::string text, line;
+  std::getline(log, line);
+  const std::string header = line;
+  const std::string before = header.substr(0, header.find(",shoulder_joint,"));
+  const auto column = std::ranges::count(before, ',') + 1;
+  while (std::getline(log, line)) {
+    std::size_t at = 0;
+    for (std::ptrdiff_t c = 0; c < column; ++c) at = line.find(',', at) + 1;
+    const bool negative = line[at] == '-';
+    text += line.substr(0, at) + (negative ? "" : "-") + line.substr(negative ? at + 1 : at) + "\n";
+  }
+  WriteFile(folder + "/arm.csv", header + "\n" + text);
+  const std::string accept = " --recording " + folder + " --accept sign:shoulder_joint";
+  ASSERT_EQ(RunProgram("calibrate " + project + accept + " -o " + out).exit_code, 0);
+  const ProgramResult checked = RunProgram("check " + project + " --calibration " + out + accept);
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_TRUE(checked.out.starts_with("Unchanged: ")) << checked.out;
+}
+
 TEST_F(Simulate, RefusesWhatIsNotThere) {
   const auto refused = [&](const std::string& more, const std::string& part, int exit_code = 3) {
     const ProgramResult result = Run("none", more);
