@@ -126,6 +126,7 @@ class LeftArm(ScratchCase):
         real.start_from(q)
         self.assertLessEqual(np.abs(real.command(q) - q).max(), 2e-3 + 1e-12)
         real.limit_changes([])
+        real.forget()
         self.assertGreater(np.abs(real.command(q) - q).max(), 4e-3)
         real.ease_changes(10)
         with self.assertRaisesRegex(elastocal.InputError, "most: 3 limits; none or"):

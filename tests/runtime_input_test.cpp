@@ -164,8 +164,8 @@ TEST(RuntimeInput, APoseMustBeFiniteAndARotation) {
     EXPECT_EQ(robot.Command(&target, kPlan, kNone, 0), unsigned{EC_BAD_POSITION});
     EXPECT_TRUE(robot.command() == plain.command());
   }
-  Eigen::Isometry3d rounded = there;  // five digits
-  rounded.linear() = (1e5 * there.linear()).array().round() / 1e5;
+  Eigen::Isometry3d rounded = there;  // three decimals
+  rounded.linear() = (1e3 * there.linear()).array().round() / 1e3;
   EXPECT_EQ(Compensator(ElasticArm()).Command(&rounded, kPlan, kNone, 0), unsigned{EC_FINE});
 }
 

@@ -48,7 +48,9 @@ struct CauseSearch {
   /// All causes, each tested beside the calibration alone, by ascending p-value.
   std::vector<CauseFinding> findings;
   std::vector<CauseFinding> chosen;  ///< causes that were taken, in that order
-  double error = 0.0;                ///< root mean square held-out error without any cause
+  /// Root mean square held-out error without any cause: where some were chosen, over the divisions
+  /// of `nested_error`, else over those of the findings.
+  double error = 0.0;
   /// Error and gain of the whole search by nested folds: in each fold the causes are chosen without
   /// the postures on which they are judged. In tables of up to 60 postures, these are means over
   /// ten divisions into folds; over fewer in larger ones. The standard error of the gain allows for

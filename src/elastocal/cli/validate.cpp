@@ -62,9 +62,10 @@ std::string VerdictText(const ValidationRun& run) {
   if (!run.mistakes.empty()) {
     return "Verdict: the recording has a mistake or contradicts the calibration; see below.\n\n";
   }
-  if (!run.converged() || !run.plausible() || !run.better() || run.urdf_worse()) {
+  if (!run.converged() || !run.plausible() || !run.better()) {
     return "Verdict: do not deploy; see below.\n\n";
   }
+  if (run.urdf_worse()) return "Verdict: do not deploy the URDF alone; see below.\n\n";
   const auto error = [](const Refit& refit) { return Millimetres(refit.metrics_all.rmse_3d, 3); };
   const char* word = run.own_recording      ? "the recording is the calibration's own. From"
                      : run.predicted == 0.0 ? "from"
@@ -132,8 +133,8 @@ std::vector<std::string> ErrorsOf(const ValidationRun& run) {
   } else if (run.urdf_worse()) {
     errors.push_back(fmt::format(
         "the calibrated URDF alone is worse than the uncalibrated one here: {:.3g} mm against "
-        "{:.3g} mm; only with compensation of elasticity is the calibrated robot better ({:.3g} "
-        "mm): do not deploy the URDF without it",
+        "{:.3g} mm; only a controller that compensates what a URDF cannot hold makes the robot "
+        "better ({:.3g} mm)",
         1e3 * run.urdf->metrics_all.rmse_3d, 1e3 * run.transfer.uncalibrated.metrics_all.rmse_3d,
         1e3 * run.transfer.calibrated.metrics_all.rmse_3d));
   }

@@ -48,8 +48,9 @@ std::vector<int> JointsBeyondTrunk(const RobotTree& tree, const Limb& limb) {
   return {begin, limb.joints.end()};
 }
 
-/// The robot with motors that carry these loads, for its prior: an effort that is less is no figure
-/// of the motor (a placeholder, or that before a gear), and would make its joint as soft.
+/// The robot with motors that carry these loads, for its prior. A smaller effort cannot be that of
+/// the joint (it is a placeholder, or that of a motor before its gear), and the prior would make
+/// the joint too soft.
 RobotTree WithAbleMotors(RobotTree tree, const JointLoads& loads) {
   for (std::size_t k = 0; k < tree.joints.size(); ++k) {
     double& effort = tree.joints[k].limits.effort;

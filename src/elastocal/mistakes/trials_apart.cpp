@@ -44,9 +44,9 @@ std::vector<PartOfRecording> TrialsOf(const Recording& recording) {
 
 /// Factor by which the error exceeds the residual, because the fit adapts parameters. A body tells
 /// six numbers in each posture (position and attitude), and its markers add at most six parameters.
-/// The root link of each posture of a trial is six unknowns, which a footing that stands still
-/// through several postures tells for each of them; that of a table is six. Infinite where there
-/// are as many parameters as numbers.
+/// The root link has six unknowns in each posture of a trial, and six in a whole table. A footing
+/// has six unknowns, and tells six numbers in each posture in which the robot stands on it.
+/// Infinite where there are as many parameters as numbers.
 double OfFreedom(const CalibrationResult& fit, const Recording& part) {
   double rows = -6.0 * (fit.placement.empty() ? 1 : part.posture_count());
   std::set<int> footings;

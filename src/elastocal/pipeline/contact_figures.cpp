@@ -35,9 +35,8 @@ ObservationFigures FiguresOfGood(const ContactRun& run) {
   for (const ObservationOutlier& outlier : outcome.estimate.outliers) {
     bad.insert(outlier.observation);
   }
-  const std::vector<Eigen::VectorXd> left =
-      outcome.held_out.folds > 0 ? outcome.held_out.left
-                                 : LeftOf(run.model, run.observations, outcome.estimate.fit.values);
+  const std::vector<Eigen::VectorXd>& left =
+      outcome.held_out.folds > 0 ? outcome.held_out.left : outcome.left;
   Observations good = run.observations;
   good.all.clear();
   std::vector<Eigen::VectorXd> left_of_good;

@@ -147,23 +147,13 @@ std::string RefusedTrials(const Measurements& measured) {
   return refused;
 }
 
-/// Whether an earlier calibration knows the springs of the leg that ends in this link.
-bool KnownEarlier(const Project& project, int link) {
-  return std::ranges::any_of(project.chains, [&](const Chain& chain) {
-    return chain.tip_link == link &&
-           std::ranges::any_of(project.calibration.earlier.names, [&](const std::string& name) {
-             return name.starts_with(chain.name + ".compliance_");
-           });
-  });
-}
-
 /// Links of UnknownStance, with the name of a trial that stands there.
 std::map<int, std::string> UnknownLegs(const Project& project, const Measurements& measured) {
   std::map<int, std::string> unknown;
   if (!project.elasticity.base) return unknown;
   const std::map<int, std::string> known = StandsAloneOn(measured.calibration);
   for (const auto& [link, trial] : StandsAloneOn(measured.validation)) {
-    if (!KnownEarlier(project, link)) unknown.emplace(link, trial);
+    unknown.emplace(link, trial);
   }
   for (const TrialSummary& trial : measured.trials) {
     const std::vector<int>& support = trial.trial.support;

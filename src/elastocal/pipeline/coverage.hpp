@@ -39,8 +39,8 @@ std::vector<ChainCoverage> FindCoverage(const Project& project, const Measuremen
 /// Objections, one for each link on which the robot stands alone in a trial for calibration that
 /// cannot be used, or in a trial for validation, but in no trial that is used for the estimate. The
 /// springs of that leg's ankle then stay at the prior, even if other trials calibrate its chain.
-/// Empty where legs are rigid. A leg whose springs an earlier calibration knows
-/// (CalibrationOptions::earlier) needs no trial for calibration, unless that cannot be used.
+/// Empty where legs are rigid. An earlier calibration that knows these springs does not help, since
+/// the model has no legs on which no trial of the estimate stands.
 std::vector<std::string> UnknownStance(const Project& project, const Measurements& measured);
 
 /// The trials for validation without those that stand on a link of UnknownStance alone. The robot

@@ -57,8 +57,8 @@ void CheckOptions(const CompensatorOptions& options) {
 std::string DescribeStatus(CompensatorStatus status) {
   constexpr std::pair<CompensatorStatus, const char*> kTexts[] = {
       {EC_BAD_POSITION,
-       "positions that are not finite, or too few: the last good ones were used (of wanted poses: "
-       "those of the nominal robot)"},
+       "positions that are not finite, or too few: the last good ones were used; or a wanted pose "
+       "that is not finite or no rotation: those of the nominal robot were used"},
       {EC_BAD_TORQUE,
        "torques that are not finite, or of a wrong number: the last good ones were used, or those "
        "of "

@@ -130,7 +130,7 @@ class Compensator {
 
   /// As above, for wanted poses of the ends of limbs in the root link's frame, by tip of the model
   /// (array of tip_names.size()). `nominal` is a posture nearby, to which redundant joints stay
-  /// close. Where a pose is not finite, or its matrix no rotation (to 1e-3), the status is
+  /// close. Where a pose is not finite, or its matrix no rotation (to 5e-3), the status is
   /// EC_BAD_POSITION and the command that for `nominal`.
   CompensatorStatus Command(const Eigen::Isometry3d* T_root_tip,
                             const Eigen::Ref<const Eigen::VectorXd>& nominal,

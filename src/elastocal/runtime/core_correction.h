@@ -156,10 +156,10 @@ static inline unsigned ec_correct(const ec_robot* robot, const double* q, const 
   return status;
 }
 
-/* Whether rows of a finite matrix are the axes of a right-handed frame: to 1e-3, so that numbers of
-   few digits pass. */
+/* Whether rows of a finite matrix are the axes of a right-handed frame: to 5e-3, so that numbers
+   with three decimals pass. */
 static inline int ec_is_rotation(const double* R) {
-  const double most = 1e-3;
+  const double most = 5e-3;
   double third[3];
   int i, good;
   ec_cross(R, R + 3, third);

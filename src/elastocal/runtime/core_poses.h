@@ -20,7 +20,8 @@
 enum {
   EC_FINE = 0,
   EC_BAD_POSITION = 1,   /* a position is not finite, or beyond 1e9: the last good positions were
-                            used; or a wanted pose is none: those of the nominal robot were */
+                            used. Or a wanted pose is not finite or its matrix no rotation:
+                            those of the nominal robot were used */
   EC_BAD_TORQUE = 2,     /* so is a torque, or their number is wrong: the last good one was used, or
                             else statics */
   EC_BAD_SUPPORT = 4,    /* no such foot: the last good support was used */

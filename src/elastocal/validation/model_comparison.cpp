@@ -2,8 +2,10 @@
 #include "elastocal/validation/model_comparison.hpp"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -67,17 +69,13 @@ const char* NameOfUnits(FoldUnit unit) {
   }
 }
 
-/// Unites nearly equal postures. Moments of a motion that follow each other within a stretch are
-/// equal without being a repetition: they would unite the whole motion, moment by moment.
-void UnitePostures(const Recording& recording, const Eigen::MatrixXd& q, std::vector<int>& units) {
-  const std::vector<int> motion = MotionOfPostures(recording);
-  const auto neighbours = [&](int a, int b) {
-    return motion[a] >= 0 && motion[a] == motion[b] &&
-           std::abs(recording.time_s[a] - recording.time_s[b]) <= kStretch_s;
-  };
-  const auto postures = static_cast<int>(q.rows());
+/// Calls `united(a, b)` for nearly equal postures a and b: for all of them, or for so many that the
+/// others are united with these.
+template <typename United>
+void ForEqualPostures(const Eigen::MatrixXd& q, United united) {
   // Nearly equal postures are neighbours in the order of the joint that moves furthest.
-  std::vector<int> order(postures);
+  const auto postures = static_cast<int>(q.rows());
+  std::vector<int> order(Size(postures));
   std::iota(order.begin(), order.end(), 0);
   Eigen::Index furthest = 0;
   (q.colwise().maxCoeff() - q.colwise().minCoeff()).maxCoeff(&furthest);
@@ -86,14 +84,43 @@ void UnitePostures(const Recording& recording, const Eigen::MatrixXd& q, std::ve
             [&](int a, int b) { return std::pair(positions[a], a) < std::pair(positions[b], b); });
   for (int k = 0; k < postures; ++k) {
     const int end = std::min(postures, k + 1 + kMostCompared);
-    int united = 0;
-    for (int l = k + 1; l < end && united < kMostUnited; ++l) {
+    int count = 0;
+    for (int l = k + 1; l < end && count < kMostUnited; ++l) {
       if (positions[order[l]] - positions[order[k]] > kSamePosture) break;
       const auto apart = (q.row(order[k]) - q.row(order[l])).cwiseAbs();
-      if (apart.maxCoeff() > kSamePosture || neighbours(order[k], order[l])) continue;
-      Unite(order[k], order[l], units);
-      ++united;
+      if (apart.maxCoeff() > kSamePosture) continue;
+      united(order[k], order[l]);
+      ++count;
     }
+  }
+}
+
+/// Unites nearly equal postures. Stretches of motions, which are united already, are united with
+/// each other only where most moments of one have an equal in the other: a motion repeats itself.
+/// Single moments do not count, because the last one of a stretch is nearly equal to the first one
+/// of the next, and would unite all of them.
+void UnitePostures(const Recording& recording, const Eigen::MatrixXd& q, std::vector<int>& units) {
+  const std::vector<int> motion = MotionOfPostures(recording);
+  std::vector<int> stretch(units.size(), -1);
+  std::map<int, int> moments;  // by stretch
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    if (motion[i] < 0) continue;
+    stretch[i] = FirstOfUnit(static_cast<int>(i), units);
+    ++moments[stretch[i]];
+  }
+  std::set<std::pair<int, int>> equals;  // moment, and another stretch in which it has an equal
+  ForEqualPostures(q, [&](int a, int b) {
+    if (stretch[Size(a)] < 0 || stretch[Size(b)] < 0) {
+      Unite(a, b, units);
+    } else if (stretch[Size(a)] != stretch[Size(b)]) {
+      equals.insert({a, stretch[Size(b)]});
+      equals.insert({b, stretch[Size(a)]});
+    }
+  });
+  std::map<std::pair<int, int>, int> shared;
+  for (const auto& [moment, other] : equals) ++shared[{stretch[Size(moment)], other}];
+  for (const auto& [pair, count] : shared) {
+    if (2 * count > moments[pair.first]) Unite(pair.first, pair.second, units);
   }
 }
 
@@ -106,12 +133,12 @@ std::vector<int> UnitOfPosture(const Recording& recording, FoldUnit unit,
   if (recording.posture_count() == 0) return {};
   std::vector<int> units(Size(recording.posture_count()));
   std::iota(units.begin(), units.end(), 0);
+  UniteMoments(recording, units);
   if (coordinates.empty()) {
     UnitePostures(recording, recording.q, units);
   } else {
     UnitePostures(recording, recording.q(Eigen::all, coordinates), units);
   }
-  UniteMoments(recording, units);
   for (int i = 0; i < recording.posture_count(); ++i) units[i] = FirstOfUnit(i, units);
   return units;
 }
@@ -210,9 +237,13 @@ std::vector<int> DealFolds(const Recording& recording, const FoldOptions& option
                      " needs a recording of trials; this is a table of postures");
   }
   if (options.folds < 2 || options.folds > count) {
+    const bool postures = options.unit == FoldUnit::kPosture;
     throw InputError("cross-validation needs 2 to " + std::to_string(count) +
                      " folds for as many " + NameOfUnits(options.unit) + ", not " +
-                     std::to_string(options.folds));
+                     std::to_string(options.folds) +
+                     (postures ? " (equal are those that differ by less than 0.02 rad or m in all "
+                                 "joints that move markers)"
+                               : ""));
   }
   Random random(options.seed);
   for (int i = count - 1; i > 0; --i) std::swap(units[i], units[random.Index(i + 1)]);

@@ -56,7 +56,8 @@ struct FoldOptions {
   std::uint64_t seed = 1;  ///< seed by which the units are distributed to the folds
   int threads = 1;
   FootingBy by = FootingBy::kAllMarkers;  ///< markers that place the feet in the held-out postures
-  /// Coordinates of q by which postures differ (MovingCoordinates); empty: all.
+  /// Coordinates of q by which postures differ, for DealFolds; empty: all. CrossValidate takes
+  /// those of its model (MovingCoordinates).
   std::vector<int> coordinates = {};
 };
 

@@ -38,7 +38,12 @@ TEST(FoldsFor, MomentsOfAMotionAreNoRepetitions) {
   again.q << recording.q, recording.q;
   again.time_s.resize(2 * kMoments);
   again.time_s << recording.time_s, recording.time_s.array() + 60.0;
-  EXPECT_LE(FoldsFor(again, 10), 3);
+  EXPECT_EQ(FoldsFor(again, 10), 3);
+  // There and back at once: the last stretch is the first one, backwards.
+  Recording back = again;
+  back.q.bottomRows(kMoments) = recording.q.colwise().reverse();
+  back.time_s.tail(kMoments) = recording.time_s.array() + 0.01 * kMoments;
+  EXPECT_EQ(FoldsFor(back, 10), 3);
 }
 
 // A head that looks about makes no new postures of an arm.

@@ -231,9 +231,9 @@ void JudgeHeldOut(const ErrorTable& table, ModelKind model, ModelKind urdf, Verd
   for (const TrialErrors& trial : table.trials) {
     const auto errors = trial.metrics.find(model);
     if (errors == trial.metrics.end() || std::isfinite(errors->second.rmse_3d)) continue;
-    verdict.remarks.push_back("trial " + trial.trial +
-                              " for validation is not judged: the root link could be placed in "
-                              "none of its postures. Were its markers seen?");
+    verdict.remarks.push_back(trial.trial +
+                              ", a trial for validation, is not judged: the root link could be "
+                              "placed in none of its postures. Were its markers seen?");
   }
   for (const ErrorTableRow& row : table.groups) {
     const auto calibrated = row.metrics.find(model);

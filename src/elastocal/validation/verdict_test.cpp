@@ -258,9 +258,10 @@ TEST(JudgeHeldOut, NamesTrialsOfWhichNothingIsPredicted) {
   Verdict verdict;
   JudgeHeldOut(table, ModelKind::kFull, ModelKind::kGeometric, verdict);
   ASSERT_EQ(verdict.remarks.size(), 1u);
-  EXPECT_EQ(verdict.remarks[0],
-            "trial lost for validation is not judged: the root link could be placed in none of its "
-            "postures. Were its markers seen?");
+  EXPECT_EQ(
+      verdict.remarks[0],
+      "lost, a trial for validation, is not judged: the root link could be placed in none of its "
+      "postures. Were its markers seen?");
 }
 
 TEST(JudgeHeldOut, SaysNothingWithoutObservations) {
