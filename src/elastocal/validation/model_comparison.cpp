@@ -321,11 +321,11 @@ CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorMo
 
 CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorModel& model,
                               const Recording& recording, const CalibrationOptions& options,
-                              const FoldOptions& given, const MakeFold& make,
+                              const FoldOptions& folds, const MakeFold& make,
                               const Progress& progress) {
-  FoldOptions folds = given;
-  folds.coordinates = MovingCoordinates(model);
-  const std::vector<int> fold_of = DealFolds(recording, folds);
+  FoldOptions deal = folds;
+  deal.coordinates = MovingCoordinates(model);
+  const std::vector<int> fold_of = DealFolds(recording, deal);
   std::vector<FoldResult> results(static_cast<std::size_t>(folds.folds));
   ForAll(
       results.size(), folds.threads,
@@ -347,7 +347,7 @@ CrossValidation CrossValidate(const std::vector<ModelKind>& kinds, const ErrorMo
   const ObservationMask judged = Judged(model, recording, folds.by);
   CrossValidation validation;
   validation.folds = folds.folds;
-  validation.unit_of = UnitOfPosture(recording, folds.unit, folds.coordinates);
+  validation.unit_of = UnitOfPosture(recording, deal.unit, deal.coordinates);
   for (const FoldResult& result : results) validation.unconverged += result.unconverged;
   for (ModelKind kind : kinds) {
     const auto k = static_cast<int>(kind);
