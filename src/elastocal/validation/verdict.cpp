@@ -153,9 +153,8 @@ Verdict Judge(const ModelComparison& comparison, const CrossValidation& validati
     const auto largest = static_cast<std::size_t>(comparison.largest_kind());
     if (!std::isfinite(validation.metrics[largest].rmse_3d)) {
       verdict.remarks.emplace_back(
-          "no held-out posture could be predicted, because the root link could not be placed "
-          "there: "
-          "the errors are those of the fit, which judge little");
+          "no held-out posture could be predicted, because the root link could not be placed in "
+          "any: the errors are those of the fit, which judge little");
     } else if (validation.not_predicted > 0) {
       verdict.remarks.push_back(
           std::to_string(validation.not_predicted) +
