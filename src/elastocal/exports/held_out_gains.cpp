@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "elastocal/math/input_error.hpp"
-#include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/read_accepting.hpp"
 #include "elastocal/pipeline/earlier_calibration.hpp"
 #include "elastocal/pipeline/known_places.hpp"
 #include "elastocal/recorded/measurements.hpp"
@@ -101,9 +101,7 @@ HeldOutGains FindHeldOutGains(const CalibratedRobot& robot, const GainOptions& o
   CheckHasMarkers(project);
   project.elasticity = ElasticityOf(robot.calibration, project);
   const Assumptions told = RecordedAssumptions(robot);
-  project.measurement.accepted = told.accept;
-  Measurements measured = ReadMeasurements(project, RecordedRecordings(robot));
-  AcceptMistakes(project, told.accept, measured);
+  Measurements measured = ReadAccepting(project, RecordedRecordings(robot), told.accept).measured;
   const RecordedModel recorded = MakeRecordedModel(project, {}, measured);
   CheckApplies(robot.calibration, project, recorded.model);
   std::vector<std::string> warnings;

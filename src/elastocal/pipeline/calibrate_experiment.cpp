@@ -17,6 +17,7 @@
 #include "elastocal/mistakes/find_contradictions.hpp"
 #include "elastocal/mistakes/find_faults.hpp"
 #include "elastocal/mistakes/plain_mistakes.hpp"
+#include "elastocal/mistakes/read_accepting.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
@@ -281,9 +282,9 @@ void JudgeRun(Work& work) {
 ///
 /// Not in the paper: plain mistakes are named, and nothing is chosen or judged by them.
 void ReadWhatWasMeasured(Work& work) {
-  work.project.measurement.accepted = work.options.accept;
-  work.measured = ReadMeasurements(work.project, work.recordings);
-  work.run.undone = AcceptMistakes(work.project, work.options.accept, work.measured);
+  AcceptedMeasurements read = ReadAccepting(work.project, work.recordings, work.options.accept);
+  work.measured = std::move(read.measured);
+  work.run.undone = std::move(read.undone);
   work.run.faults = FindPlainMistakes(work.project, work.recording());
   work.sound = work.run.faults.empty();
 }

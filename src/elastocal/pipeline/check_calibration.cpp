@@ -12,6 +12,7 @@
 
 #include "elastocal/calibration/prediction.hpp"
 #include "elastocal/mistakes/check_alternatives.hpp"
+#include "elastocal/mistakes/read_accepting.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/calibration_files.hpp"
@@ -85,11 +86,8 @@ CheckRun CheckCalibration(const Project& given, const std::filesystem::path& cal
   CheckRun run;
   run.calibration_file = FindCalibrationFiles(calibration_file).calibration.string();
   Project project = given;
-  project.measurement.accepted = options.accept;
-  Measurements measured = ReadMeasurements(project, {recording}, ReadFor::kAnyUse);
-  for (const std::string& what : AcceptMistakes(project, options.accept, measured)) {
-    run.warnings.push_back(DescribeUndone(what));
-  }
+  auto [measured, undone] = ReadAccepting(project, {recording}, options.accept, ReadFor::kAnyUse);
+  for (const std::string& what : undone) run.warnings.push_back(DescribeUndone(what));
 
   // A fit in which every joint is free to have moved since the calibration.
   EarlierFit fit = FitAfterEarlier(calibration_file, options.days, measured, options.seed,

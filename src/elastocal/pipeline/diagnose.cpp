@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "elastocal/io/marker_places_file.hpp"
-#include "elastocal/mistakes/recording_mistakes.hpp"
+#include "elastocal/mistakes/read_accepting.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
 #include "elastocal/pipeline/cause_picture_json.hpp"
 #include "elastocal/pipeline/choose_model.hpp"
@@ -203,9 +203,7 @@ Diagnosis Diagnose(const fs::path& folder, const fs::path& project_file,
                             EstimateObserved(begin.model, begin.observations, {}).fit, seed);
     diagnosis.recording = fmt::format("{}", fmt::join(begin.observations.files, ", "));
   } else {
-    project.measurement.accepted = told.accept;
-    Measurements measured = ReadMeasurements(project, recordings);
-    AcceptMistakes(project, told.accept, measured);
+    const Measurements measured = ReadAccepting(project, recordings, told.accept).measured;
     if (told.prior.empty()) {
       as_calibrated();
     } else {

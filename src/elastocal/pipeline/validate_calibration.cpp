@@ -10,6 +10,7 @@
 
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/statistics.hpp"
+#include "elastocal/mistakes/read_accepting.hpp"
 #include "elastocal/mistakes/recording_mistakes.hpp"
 #include "elastocal/mistakes/transfer_faults.hpp"
 #include "elastocal/pipeline/calibrated_robot.hpp"
@@ -228,11 +229,8 @@ ValidationRun ValidateCalibration(const Project& given, const std::filesystem::p
                     .warnings = {}};
   Project project = given;
   project.elasticity = ElasticityOf(run.calibration, given);
-  project.measurement.accepted = options.accept;
-  Measurements measured = ReadMeasurements(project, {recording}, ReadFor::kAnyUse);
-  for (const std::string& what : AcceptMistakes(project, options.accept, measured)) {
-    run.warnings.push_back(DescribeUndone(what));
-  }
+  auto [measured, undone] = ReadAccepting(project, {recording}, options.accept, ReadFor::kAnyUse);
+  for (const std::string& what : undone) run.warnings.push_back(DescribeUndone(what));
   const Measurements as_recorded = measured;
   const RecordedModel robot = MakeRecordedModel(project, options.seed, measured);
   CheckApplies(run.calibration, project, robot.model);
