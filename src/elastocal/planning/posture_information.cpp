@@ -32,7 +32,7 @@ PostureInformation::PostureInformation(const ObservationResiduals& residuals,
     information += rows.transpose() * rows;
   }
   prior_ = information.llt().solve(Eigen::MatrixXd::Identity(first.back(), first.back()));
-  rows_.resize(Size(count));
+  rows_.assign(Size(count), Eigen::MatrixXd(0, first.back()));
   for (int b = 0; b < observations; ++b) {
     Eigen::MatrixXd& of = rows_[Size(posture[Size(b)])];
     const Eigen::MatrixXd rows = spread(b);
