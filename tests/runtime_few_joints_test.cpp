@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "elastocal/exports/runtime_robot.hpp"
@@ -100,6 +101,37 @@ TEST(RuntimeFewJoints, TalosHasJointsEnough) {
   for (const ec_tip& tip : MakeRuntimeModel(project, RandomCalibration(project, 1)).tips) {
     EXPECT_EQ(tip.arm, EC_ARM);
   }
+}
+
+// Eleven joints place two feet, of which each had its own six if the hips did not share a motor.
+// What is left is shared out: it does not all fall to the foot that comes second.
+TEST(RuntimeFewJoints, FeetWhoseHipsShareAMotorAreCorrectedTogether) {
+  const Project project = ReadProject(SourceFile("tests/robots/mini_humanoid_project.yaml"));
+  const StoredCalibration stored = RandomCalibration(project, 1);
+  Compensator real(MakeRuntimeModel(project, stored, RuntimeContent::kGeometry));
+  Compensator nominal(MakeRuntimeModel(project, stored, RuntimeContent::kNominal));
+  Eigen::VectorXd q = project.motion.rest;
+  for (const auto& [joint, position] :
+       {std::pair{"hip_pitch", -0.5}, {"knee_pitch", 1.0}, {"ankle_pitch", -0.5}}) {
+    for (const char* side : {"left_", "right_"}) {
+      const int k = FindJoint(project.tree, side + std::string(joint));
+      q[project.tree.joints[static_cast<std::size_t>(k)].coordinate] = position;
+    }
+  }
+  nominal.Forward(q, Eigen::VectorXd(), 0);
+  const auto turned = [&](const char* sole) {
+    const int link = FindLink(project.tree, sole);
+    const Eigen::Matrix3d R =
+        nominal.link_pose(link).linear().transpose() * real.link_pose(link).linear();
+    return Eigen::AngleAxisd(R).angle();
+  };
+  real.Forward(q, Eigen::VectorXd(), 0);
+  const double before = std::max(turned("left_sole"), turned("right_sole"));
+  real.Command(q, Eigen::VectorXd(), 0);
+  real.Forward(real.command(), Eigen::VectorXd(), 0);
+  const double left = turned("left_sole"), right = turned("right_sole");
+  EXPECT_GT(before, 0.01);
+  EXPECT_LT(std::max(left, right), 2.0 * std::min(left, right));
 }
 
 // The springs are so soft that they bend by some milliradians. After two steps, further steps

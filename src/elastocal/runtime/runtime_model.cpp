@@ -12,16 +12,6 @@
 namespace elastocal {
 namespace {
 
-/// The joint at the root that carries a body; -1 for the root's own body.
-int RootJoint(const RuntimeModel& model, int body) {
-  int joint = -1;
-  while (body > 0) {
-    joint = body - 1;
-    body = model.calibrated[static_cast<std::size_t>(joint)].parent;
-  }
-  return joint;
-}
-
 /// The coordinates that move the end of a limb.
 std::set<int> CoordinatesOf(const RuntimeModel& model, const ec_tip& tip) {
   std::set<int> coordinates;
@@ -31,6 +21,27 @@ std::set<int> CoordinatesOf(const RuntimeModel& model, const ec_tip& tip) {
     body = joint.parent;
   }
   return coordinates;
+}
+
+/// For each tip, the first of the tips with which it shares a coordinate, directly or by others:
+/// the commands of limbs on one joint of the root, or on joints that share a motor, are found
+/// together.
+std::vector<std::size_t> FirstOfBranch(const RuntimeModel& model) {
+  std::vector<std::size_t> first(model.tips.size());
+  std::vector<std::set<int>> coordinates(model.tips.size());
+  for (std::size_t t = 0; t < model.tips.size(); ++t) {
+    first[t] = t;
+    coordinates[t] = CoordinatesOf(model, model.tips[t]);
+    for (std::size_t other = 0; other < t; ++other) {
+      const bool shared = std::ranges::any_of(
+          coordinates[t], [&](int c) { return coordinates[other].contains(c); });
+      if (!shared) continue;
+      const std::size_t both = std::min(first[t], first[other]);
+      const std::size_t joined = std::max(first[t], first[other]);
+      std::replace(first.begin(), first.begin() + static_cast<std::ptrdiff_t>(t) + 1, joined, both);
+    }
+  }
+  return first;
 }
 
 /// By which length the turns of the end of each limb count. Limbs of one branch that ask for more
@@ -71,13 +82,14 @@ RuntimeBranches FindBranches(RuntimeModel& model) {
   RuntimeBranches branches;
   branches.branch_of_coordinate.assign(model.lower.size(), -1);
   branches.column_of_coordinate.assign(model.lower.size(), 0);
-  std::map<int, int> branch_of_root;
+  std::map<std::size_t, int> branch_of_first;
   std::erase_if(model.tips, [](const ec_tip& tip) { return tip.frame.body == 0; });
-  for (ec_tip& tip : model.tips) {
-    const int root = RootJoint(model, tip.frame.body);
+  const std::vector<std::size_t> first = FirstOfBranch(model);
+  for (std::size_t t = 0; t < model.tips.size(); ++t) {
+    ec_tip& tip = model.tips[t];
     tip.branch =
-        branch_of_root.emplace(root, static_cast<int>(branch_of_root.size())).first->second;
-    branches.branch_size.resize(branch_of_root.size(), 0);
+        branch_of_first.emplace(first[t], static_cast<int>(branch_of_first.size())).first->second;
+    branches.branch_size.resize(branch_of_first.size(), 0);
     tip.freedom = static_cast<int>(CoordinatesOf(model, tip).size());
     for (int body = tip.frame.body; body > 0;) {
       const ec_joint& joint = model.calibrated[static_cast<std::size_t>(body - 1)];

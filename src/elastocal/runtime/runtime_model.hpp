@@ -47,8 +47,8 @@ struct RuntimeBranches {
   std::vector<int> branch_of_coordinate, column_of_coordinate, branch_size;
 };
 
-/// Sets the branch of each tip (the joint at the root that carries it) and how the angles of the
-/// tip count, and finds the coordinates of each branch.
+/// Sets the branch of each tip (the tips that share coordinates, directly or by others) and how the
+/// angles of the tip count, and finds the coordinates of each branch.
 RuntimeBranches FindBranches(RuntimeModel& model);
 
 /// Whether a limb can place its end by itself: by four coordinates or more that move the end of no
