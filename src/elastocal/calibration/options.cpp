@@ -26,6 +26,8 @@ double TypicalError(ParameterKind kind) {
   }
 }
 
+constexpr double kSlideCompliance = 1e-6;  // m/N, of a slide without effort
+
 }  // namespace
 
 const char* PriorGroupName(PriorGroup group) {
@@ -74,9 +76,12 @@ double Prior::Of(const RobotTree& tree, const Parameter& parameter) const {
   double own = parameter.typical > 0.0 ? parameter.typical : (*this)[parameter.kind];
   if (own == 0.0) {
     const Joint& joint = tree.joints[parameter.joint];
+    const bool slides = joint.type == JointType::kPrismatic;
     const double effort = joint.limits.effort;
-    const bool known = joint.type == JointType::kRevolute && std::isfinite(effort) && effort > 0.0;
-    own = known ? deflection / effort : TypicalError(parameter.kind);
+    const bool known = std::isfinite(effort) && effort > 0.0;
+    own = known    ? (slides ? slide_deflection : deflection) / effort
+          : slides ? kSlideCompliance
+                   : TypicalError(parameter.kind);
   }
   if (!IsExternal(parameter.kind)) own *= scale[GroupOf(parameter.kind)];
   return std::min(own, kUnknown * ParameterScale(parameter));

@@ -59,6 +59,10 @@ struct Prior {
   /// stiff. Without effort it is 5e-5 rad/(N.m). (Corrections and linkages have priors of their
   /// own.)
   double deflection = 0.01;
+  /// The same of a prismatic joint along its axis, m; without effort it is 1e-6 m/N. A lift carries
+  /// a nearly constant weight, so that its compliance is a displacement that only the prior tells
+  /// from an offset.
+  double slide_deflection = 1e-3;
   PriorScale scale = {};  ///< factors on all standard deviations
 
   Prior();

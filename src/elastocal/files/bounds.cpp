@@ -117,6 +117,7 @@ std::vector<Bound> BoundsOfRobotAndRecording() {
       {"calibration.floor_tilt_deg", "deg", 1e-3, 10, "a machined plate; a ramp", true},
       {"calibration.floor_height_mm", "mm", 1e-3, 100, "a machined plate; a step", true},
       {"calibration.prior.deflection_mrad", "mrad", 1e-4, 1e3, "a rigid and a soft robot"},
+      {"calibration.prior.deflection_mm", "mm", 1e-4, 100, "a rigid and a soft slide"},
   };
 }
 
@@ -220,6 +221,11 @@ std::vector<Bound> BoundsOfCommands() {
       {"compensate --most-left-mm", "mm", 0, 1e3, "an arm"},
       {"compensate --most-turned-deg", "deg", 0, 180, "any attitude"},
       {"compensate --ease-s", "s", 0, 10, "a correction that comes later than a motion ends"},
+      {"compensate --most-bend-deg", "deg", 1e-3, 17, "rotations are taken for small ones"},
+      {"compensate --most-bend-mm", "mm", 1e-3, 1e3, "a limb"},
+      {"compensate --most-change-deg", "deg", 1e-3, 180, "half a turn"},
+      {"export --torque-time-constant-s", "s", 0, 100, "slower than any motion"},
+      {"export --period-s", "s", 1e-6, 10, "no controller; a robot at rest"},
   };
 }
 

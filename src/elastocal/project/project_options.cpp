@@ -33,8 +33,10 @@ void ReadPrior(const YamlValue& section, Prior& prior) {
   std::vector<std::string> keys;
   for (const Entry& entry : kEntries) keys.emplace_back(entry.key);
   keys.emplace_back("deflection_mrad");
+  keys.emplace_back("deflection_mm");
   section.ExpectKeys(keys);
   section.ReadBounded("deflection_mrad", prior.deflection, 1e-3);
+  section.ReadBounded("deflection_mm", prior.slide_deflection, kOneMm);
   for (const Entry& entry : kEntries) {
     section.ReadBounded(entry.key, prior[entry.kind], entry.unit);
   }
