@@ -93,6 +93,17 @@ TEST_F(DesignProgram, NamesWhatIsWrongInTheProject) {
   expect("radius_mm: 135", "radius_mm: -1", "from 0.1");
 }
 
+TEST_F(DesignProgram, RefusesASearchsEndWhereNothingIsSearchedFor) {
+  const auto refused = [&](const std::string& options, const std::string& part) {
+    const ProgramResult result = RunProgram("design " + Talos() + " --chains head_trunk -o " +
+                                            File("postures.yaml") + options);
+    EXPECT_EQ(result.exit_code, 3) << result.err;
+    EXPECT_NE(result.err.find(part), std::string::npos) << part << " not in: " << result.err;
+  };
+  refused(" --count 6 --plateau 0.5", "--plateau: it says where the search ends, and --count");
+  refused(" --algorithm random --max-count 3", "--max-count: it is for --algorithm nocp");
+}
+
 TEST_F(DesignProgram, NamesWhatIsWrongInAPostureFile) {
   const auto expect = [&](const std::string& text, const std::string& part) {
     const ProgramResult result =

@@ -138,6 +138,23 @@ TEST_F(CalibratedTalos, NamesThatCDoesNotTakeAreRefused) {
   }
 }
 
+TEST_F(CalibratedTalos, TheHeaderHasTheLowPassAndLimitsThatWereAskedFor) {
+  const std::string plain = Export("c99", "--prefix small");
+  const std::string own = (scratch_.path() / "own.h").string();
+  const ProgramResult result = RunExport(
+      "c99", own, "--prefix small --torque-time-constant-s 0.5 --period-s 0.004 --most-bend-mm 7");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string text = ReadFile(own);
+  // Share of a new torque that the low-pass takes, and the limits.
+  EXPECT_NE(ReadFile(plain).find("\n    1, 0.05"), std::string::npos);
+  EXPECT_NE(text.find("\n    0.00793650793650"), std::string::npos);  // 0.004 / 0.504
+  EXPECT_NE(text.find(", 0.0070"), std::string::npos);
+  const ProgramResult refused =
+      RunExport("urdf", (scratch_.path() / "x.urdf").string(), "--period-s 0.004");
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("--period-s is about format c99"), std::string::npos) << refused.err;
+}
+
 TEST_F(CalibratedTalos, ControllersGetTheElasticRobot) {
   Compensator expected = Robot(RuntimeContent::kEverything);
   Compensator read(ReadRuntimeModel(std::filesystem::path(Export("runtime"))));

@@ -239,6 +239,10 @@ TEST_F(Simulate, RefusesWhatIsNotThere) {
   const std::string postures = scratch_.Write("postures.csv", "elbow_joint\n0\n0.1\n");
   refused("--postures " + postures + " --chains arn", "did you mean 'arm'");
   refused("--motion " + postures, "no column 'time'");
+  refused("--chains arm", "--chains: --motion FILE or --postures FILE was expected with it");
+  const std::string motion = scratch_.Write("motion.csv", "time,elbow_joint\n0,0\n1,0.1\n");
+  refused("--deploy " + Folder("out") + " --motion " + motion + " --matched",
+          "--matched: it is for simulated recordings, and --deploy records nothing");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/correction_limits.hpp"
 #include "elastocal/cli/execution_report.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/session.hpp"
@@ -32,11 +33,17 @@ struct CompensateOptions {
   double most_left_mm = 1e3 * CompensateMotionOptions{}.most_left_m;
   double most_turned_deg = CompensateMotionOptions{}.most_turned_rad * 180.0 / M_PI;
   double ease_s = 0.0;
+  CorrectionLimits limits;
 };
 
 /// What a degree of attitude counts at the end of a limb: of an arm with too few joints, and of any
 /// other.
 std::string DegreeOfFew() { return fmt::format("{:.1f} mm", DegreeAsMillimetres(EC_ARM_OF_FEW)); }
+// What deflects the robot and is in no expected error.
+constexpr const char* kFastSprings = "Springs in fast motion";
+constexpr const char* kAllSprings =
+    "All deflections by springs, which '--as compensated' corrects,";
+
 std::string Degree() { return fmt::format("{:.1f} mm", DegreeAsMillimetres(EC_ARM)); }
 
 /// Table by limb, if any limb that does not yield has a deviation.
@@ -70,8 +77,9 @@ std::string DescribeLeft(const CompensatedMotion& result) {
 }
 
 /// Expected errors because the calibration does not know the geometry better; they are in none of
-/// the other figures.
-std::string DescribeExpected(const std::vector<ExpectedAtLimb>& expected, bool from_foot) {
+/// the other figures. `elastic`: whether deflections are corrected.
+std::string DescribeExpected(const std::vector<ExpectedAtLimb>& expected, bool from_foot,
+                             bool elastic) {
   if (expected.empty()) {
     return "How far the real robot will be from that is not known: the calibration has no "
            "covariance\n";
@@ -86,16 +94,19 @@ std::string DescribeExpected(const std::vector<ExpectedAtLimb>& expected, bool f
       "much. ";
   if (!from_foot) {
     return "\n" + table.Render() + "Seen from the root link" + of_all +
-           "Springs in fast motion come on top. Measured places of markers on hands and root\nlink "
+           (elastic ? kFastSprings : kAllSprings) +
+           " come on top. Measured places of markers on hands and root\nlink "
            "make it less (calibrate --marker-places)\n";
   }
   return "\n" + table.Render() + "Seen from the standing foot" + of_all +
-         "Springs in fast motion and a stabiliser come on top. Measured places of markers on "
+         (elastic ? kFastSprings : kAllSprings) +
+         " and a stabiliser come on top. Measured places of markers on "
          "hands,\nfeet and waist make it less (calibrate --marker-places), and so does a floor "
          "whose level is known\nbetter (calibration: {floor_tilt_deg: ...})\n";
 }
 
-std::string DescribeCompensation(const CompensatedMotion& result, const Project& project) {
+std::string DescribeCompensation(const CompensatedMotion& result, const Project& project,
+                                 bool elastic) {
   TextTable table({"over all samples", "worst", "at s", "where"});
   const auto add = [&](const char* what, const MotionExtreme& at, double scale) {
     table.Add({what, fmt::format("{:.2f}", scale * at.value), fmt::format("{:.2f}", at.time_s),
@@ -122,7 +133,8 @@ std::string DescribeCompensation(const CompensatedMotion& result, const Project&
              "Left at the ends of limbs of the calibrated model (but for those that yield): at "
              "most {:.3f} mm and {:.4f} deg\n",
              1e3 * result.residual_m, result.residual_rad * kDegreesARadian) +
-         DescribeExpected(result.expected, IsSeenFromAFoot(project, result.planned.motion));
+         DescribeExpected(result.expected, IsSeenFromAFoot(project, result.planned.motion),
+                          elastic);
 }
 
 int Compensate(const CompensateOptions& options) {
@@ -146,7 +158,8 @@ int Compensate(const CompensateOptions& options) {
       {.loads = options.loads == "planned" ? MotionLoads::kPlanned : MotionLoads::kStatics,
        .most_left_m = 1e-3 * options.most_left_mm,
        .most_turned_rad = options.most_turned_deg * M_PI / 180.0,
-       .ease_s = options.ease_s});
+       .ease_s = options.ease_s,
+       .limits = options.limits.Of()});
   result.expected = ExpectErrors(robot, result.planned.motion);
   const bool fine = result.broken.empty();
   if (fine) outputs.Set(options.output, FormatMotionTable(robot.project.tree, result.planned));
@@ -154,8 +167,9 @@ int Compensate(const CompensateOptions& options) {
   outputs.Publish();
 
   const bool quiet = options.common.Silent();
-  Print(quiet, DescribeCompensation(result, robot.project));
-  WarnOfExtra(robot, options.as == "compensated");
+  const bool elastic = options.as == "compensated";
+  Print(quiet, DescribeCompensation(result, robot.project, elastic));
+  WarnOfExtra(robot, elastic);
   for (const std::string& reason : result.warnings) spdlog::warn("{}", reason);
   for (const std::string& reason : result.broken) spdlog::error("{}", reason);
   if (!fine) {
@@ -214,6 +228,7 @@ void AddCompensate(CLI::App& app, Action& action) {
                    "(try 0.03); 0: none")
       ->check(InBounds("compensate --ease-s"))
       ->capture_default_str();
+  AddCorrectionLimits(*command, options->limits);
   AddOutputOptions(*command, options->common);
   command->footer(
       "Ends with 4, and writes nothing, where the corrected motion would break a limit, or leaves "

@@ -42,6 +42,7 @@ struct DesignCommand {
   std::optional<double> limit_margin_deg;
   /// Given options that do not apply to a design by observations (contact, instruments).
   std::vector<std::string> of_chains;
+  std::vector<std::string> of_end;  ///< given options on where the search of nocp ends
 };
 
 /// Options of the search chain by chain, which do not apply after a calibration.
@@ -116,6 +117,18 @@ int FollowUp(const DesignCommand& command, const Project& project) {
   return kFine;
 }
 
+/// Refuses options that would have no effect on the search chain by chain.
+void RefuseIdleOptions(const DesignCommand& command) {
+  if (command.of_end.empty()) return;
+  const std::string& option = command.of_end.front();
+  if (command.count > 0) {
+    throw InputError(option + ": it says where the search ends, and --count fixes the number");
+  }
+  if (command.algorithm != AlgorithmName(DesignAlgorithm::kNocp)) {
+    throw InputError(option + ": it is for --algorithm nocp; the others take --count");
+  }
+}
+
 int Design(const DesignCommand& command) {
   const Project project = WithRoom(ReadProject(command.project), command.limit_margin_deg);
   if (project.contact) {
@@ -129,6 +142,7 @@ int Design(const DesignCommand& command) {
                                 project);
   }
   if (!command.after.empty()) return FollowUp(command, project);
+  RefuseIdleOptions(command);
   const DesignFiles files(command.output);
   OutputSet outputs;
   outputs.Protect({command.project, project.urdf});
@@ -261,6 +275,9 @@ void AddDesign(CLI::App& app, Action& action) {
   command->callback([&action, options, command] {
     for (const char* option : kSearchOptions) {
       if (command->count(option) > 0) options->of_chains.emplace_back(option);
+    }
+    for (const char* option : {"--max-count", "--plateau"}) {
+      if (command->count(option) > 0) options->of_end.emplace_back(option);
     }
     for (const char* option : {"--chains", "--marker-noise-mm"}) {
       if (command->count(option) > 0) options->of_chains.emplace_back(option);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,10 +10,12 @@
 #include <fmt/format.h>
 
 #include "elastocal/cli/commands.hpp"
+#include "elastocal/cli/correction_limits.hpp"
 #include "elastocal/cli/option_checks.hpp"
 #include "elastocal/cli/session.hpp"
 #include "elastocal/exports/export_calibration.hpp"
 #include "elastocal/files/output_set.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/report/version.hpp"
 
 namespace elastocal::cli {
@@ -22,6 +25,9 @@ struct ExportCommand {
   std::string calibration, project, output;
   bool quiet = false;
   std::optional<double> least_gain_mm;
+  CorrectionLimits limits;
+  double torque_time_constant_s = 0.0, period_s = CompensatorOptions().period_s;
+  std::vector<CLI::Option*> of_header;  ///< options of the format c99 alone
   ExportOptions options;
 };
 
@@ -31,7 +37,17 @@ std::string WhatIs(const std::string& name) {
   return std::ranges::find(formats, name, &ExportFormat::name)->what;
 }
 
+void RefuseIdleOptions(const ExportCommand& command) {
+  if (command.options.format == "c99") return;
+  for (const CLI::Option* option : command.of_header) {
+    if (option->count() == 0) continue;
+    throw InputError("format " + command.options.format + ": " + option->get_name() +
+                     " is about format c99");
+  }
+}
+
 int Export(const ExportCommand& command) {
+  RefuseIdleOptions(command);
   const CalibratedRobot robot = OpenCalibratedRobot(command.calibration, command.project);
   OutputSet outputs;
   outputs.Protect(robot.inputs);
@@ -42,6 +58,9 @@ int Export(const ExportCommand& command) {
   ExportOptions options = command.options;
   options.version = ProgramVersion();
   options.output = command.output;
+  options.limits = command.limits.Of();
+  options.limits.torque_time_constant_s = command.torque_time_constant_s;
+  options.limits.period_s = command.period_s;
   if (command.least_gain_mm) options.least_gain = 1e-3 * *command.least_gain_mm;
   const ExportedCalibration exported = ExportCalibration(robot, options);
   outputs.Set(command.output, exported.text);
@@ -117,6 +136,28 @@ void AddOptionsOfFormats(CLI::App& command, ExportOptions& options) {
       ->type_name("VALUE");
 }
 
+/// Adds what the C header has fixed, for --format c99.
+void AddOptionsOfHeader(CLI::App& command, ExportCommand& options) {
+  const auto begin = command.get_options().size();
+  command
+      .add_option("--torque-time-constant-s", options.torque_time_constant_s,
+                  "Time constant of the low-pass on given torques, s: measured torques of fast "
+                  "motion hold more than the load that deflects the robot. 0: none")
+      ->check(InBounds("export --torque-time-constant-s"))
+      ->capture_default_str();
+  command
+      .add_option("--period-s", options.period_s,
+                  "Interval between the controller's calls, s, for this low-pass")
+      ->check(InBounds("export --period-s"))
+      ->capture_default_str();
+  AddCorrectionLimits(command, options.limits);
+  const std::vector<CLI::Option*> all = command.get_options();
+  for (std::size_t i = begin; i < all.size(); ++i) {
+    all[i]->group("Fixed in the header (c99)");
+    options.of_header.push_back(all[i]);
+  }
+}
+
 }  // namespace
 
 void AddExport(CLI::App& app, Action& action) {
@@ -126,6 +167,7 @@ void AddExport(CLI::App& app, Action& action) {
   AddWhatAndWhere(*command, *options);
   AddChoiceOfJoints(*command, *options);
   AddOptionsOfFormats(*command, options->options);
+  AddOptionsOfHeader(*command, *options);
   command->add_flag("--quiet,-q", options->quiet, "Print nothing but warnings and errors");
   command->footer("Example: elastocal export out --format c99 -o talos_model.h");
   command->callback([&action, options] { action = [options] { return Export(*options); }; });

@@ -3,6 +3,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -90,9 +93,28 @@ SimulationOptions MakeOptions(const SimulateCommand& command, const Project& pro
   return options;
 }
 
+/// Refuses options that would have no effect with --deploy: it records nothing.
+void RefuseIdleOfDeploy(const SimulateCommand& command) {
+  const std::vector<std::pair<std::string, bool>> idle = {
+      {"--postures", !command.postures.empty()},
+      {"--count", command.count > 0},
+      {"--kind", !command.kind.empty()},
+      {"--chains", !command.chains.empty()},
+      {"--trials", command.trials != "all"},
+      {"--matched", command.matched},
+      {"--force", command.force},
+      {"--marker-places-mm", command.marker_places_mm > 0}};
+  for (const auto& [option, given] : idle) {
+    if (given) {
+      throw InputError(option + ": it is for simulated recordings, and --deploy records nothing");
+    }
+  }
+}
+
 /// Executes a motion on the robot that was calibrated, and measures the gain by the calibration.
 int Deploy(const SimulateCommand& command) {
   if (command.motion.empty()) throw InputError("--deploy: --motion FILE was expected with it");
+  RefuseIdleOfDeploy(command);
   const Project project = ReadProject(command.project);
   const CalibrationFiles calibration = FindCalibrationFiles(command.deploy);
   const std::vector<std::filesystem::path> inputs = {
@@ -131,7 +153,9 @@ int Deploy(const SimulateCommand& command) {
   outputs.Publish();
   Print(quiet, DescribeOpenJoints(OpenJoints(project, motion)) + DescribeExecutions(executions));
   PrintReportPlace(command.output, no_report, quiet);
-  return kFine;
+  const bool played =
+      std::ranges::any_of(executions, [](const Execution& one) { return one.refused.empty(); });
+  return played ? kFine : kNotConverged;
 }
 
 /// For a project with contact or instruments: simulates tables of observations instead of trials.
@@ -166,6 +190,10 @@ void RefuseIdleOptions(const SimulateCommand& command, const Project& project) {
   }
   if (!command.kind.empty() && command.motion.empty() && command.postures.empty()) {
     throw InputError("--kind: --motion FILE or --postures FILE was expected with it");
+  }
+  const bool given = !command.motion.empty() || !command.postures.empty();
+  if (!command.chains.empty() && !given) {
+    throw InputError("--chains: --motion FILE or --postures FILE was expected with it");
   }
 }
 

@@ -202,14 +202,14 @@ std::string WithXmlComment(const std::string& text, const std::string& source,
 
 std::string CHeaderOf(const CalibratedRobot& robot, const Kept& kept,
                       const CalibrationEstimate& estimate, const std::string& heading,
-                      const std::string& given) {
+                      const std::string& given, const CompensatorOptions& limits) {
   const std::string prefix = given.empty() ? CPrefix(robot.project.tree.name) : given;
   if (!IsCName(prefix)) {
     throw InputError("--prefix " + prefix +
                      ": letters, digits and '_', the first no digit, were expected");
   }
   return MakeCHeader(MakeRuntimeModel(robot.project, kept.calibration),
-                     {prefix, heading, ParameterComments(estimate), {}});
+                     {prefix, heading, ParameterComments(estimate), limits});
 }
 
 /// The text with comments after the line that tells the format.
@@ -281,7 +281,7 @@ std::string TextOf(const CalibratedRobot& robot, const Kept& kept, const ExportO
   heading.insert(heading.end(), kept.comments.begin(), kept.comments.end());
   if (format == "c99") {
     return CHeaderOf(robot, kept, estimate, fmt::format("{}", fmt::join(heading, "\n   ")),
-                     options.prefix);
+                     options.prefix, options.limits);
   }
   if (format == "runtime") return RuntimeFileOf(robot, kept, heading);
   if (format == "linkages") return LinkagesOf(robot, kept, heading);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elastocal/pipeline/calibrated_robot.hpp"
+#include "elastocal/runtime/compensator.hpp"
 
 namespace elastocal {
 
@@ -42,6 +43,8 @@ struct ExportOptions {
   bool beside_springs = false;
   /// For the format flex_joints: damping of the hips, N.m.s/rad, which no calibration tells.
   std::optional<double> hip_damping = {};
+  /// For the format c99: the low-pass filter and the limits that the header has fixed.
+  CompensatorOptions limits = {};
 };
 
 struct ExportedCalibration {

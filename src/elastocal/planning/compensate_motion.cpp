@@ -7,7 +7,9 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -50,15 +52,40 @@ SampledMotion ToSampled(const StandingRobot& robot, const JointMotion& motion) {
   return sampled;
 }
 
+/// Whether the samples are at equal intervals, within a tenth: accelerations are differences of
+/// second order.
+bool IsEvenlySampled(const JointMotion& motion) {
+  const Eigen::Index last = motion.time_s.size() - 1;
+  const double mean = (motion.time_s[last] - motion.time_s[0]) / static_cast<double>(last);
+  const Eigen::ArrayXd steps = motion.time_s.tail(last) - motion.time_s.head(last);
+  return (steps - mean).abs().maxCoeff() <= 0.1 * mean;
+}
+
 bool CanBeChecked(const Project& project, const JointMotion& motion) {
   const bool stands = std::all_of(motion.support.begin(), motion.support.end(),
                                   [](const std::vector<int>& links) { return !links.empty(); });
   return !project.soles.empty() && motion.time_s.size() > 2 && !motion.support.empty() && stands;
 }
 
+/// By coordinate: largest speed that its joint and those that follow it allow. A follower's limit
+/// of zero says nothing.
+Eigen::VectorXd LargestSpeeds(const RobotTree& tree) {
+  Eigen::VectorXd speeds(tree.coordinate_count());
+  for (Eigen::Index c = 0; c < speeds.size(); ++c) {
+    speeds[c] = tree.joints[Size(tree.coordinate_joint[Size(c)])].limits.velocity;
+  }
+  for (const Joint& joint : tree.joints) {
+    if (!joint.mimic || joint.multiplier == 0.0 || joint.limits.velocity <= 0.0) continue;
+    speeds[joint.coordinate] =
+        std::min(speeds[joint.coordinate], joint.limits.velocity / std::abs(joint.multiplier));
+  }
+  return speeds;
+}
+
 void CheckLimits(const Project& project, CompensatedMotion& result) {
   const JointMotion& motion = result.planned.motion;
   result.position.value = std::numeric_limits<double>::infinity();
+  const Eigen::VectorXd speeds = LargestSpeeds(project.tree);
   for (Eigen::Index c = 0; c < motion.q.cols(); ++c) {
     const std::string& name = JointOfCoordinate(project.tree, c).name;
     const JointLimits& limits = project.tree
@@ -72,7 +99,7 @@ void CheckLimits(const Project& project, CompensatedMotion& result) {
       if (i == 0 || motion.time_s.size() == 0) continue;
       const double speed =
           std::abs(q - motion.q(i - 1, c)) / (motion.time_s[i] - motion.time_s[i - 1]);
-      KeepLarger(speed / limits.velocity, motion.time_s[i], name, result.velocity);
+      KeepLarger(speed / speeds[c], motion.time_s[i], name, result.velocity);
     }
   }
   const auto refuse = [&](const char* what, const MotionExtreme& at, double scale, const char* unit,
@@ -97,17 +124,6 @@ void CheckLimits(const Project& project, CompensatedMotion& result) {
   }
 }
 
-/// By coordinate: largest speed of a command, with room for the rounding in its file.
-Eigen::VectorXd Speeds(const RobotTree& tree) {
-  constexpr double kShare = 1.0 - 1e-6;
-  Eigen::VectorXd speeds(static_cast<Eigen::Index>(tree.coordinate_joint.size()));
-  for (Eigen::Index c = 0; c < speeds.size(); ++c) {
-    const int joint = tree.coordinate_joint[static_cast<std::size_t>(c)];
-    speeds[c] = kShare * tree.joints[static_cast<std::size_t>(joint)].limits.velocity;
-  }
-  return speeds;
-}
-
 /// Judges the deviations. `reasons` names the limits that cause them.
 void JudgeLeft(std::vector<std::string> reasons, const CompensateMotionOptions& options,
                CompensatedMotion& result) {
@@ -118,7 +134,7 @@ void JudgeLeft(std::vector<std::string> reasons, const CompensateMotionOptions& 
                       std::back_inserter(exceeded));
   }
   if (exceeded.empty()) {
-    result.warnings = std::move(reasons);
+    std::ranges::move(reasons, std::back_inserter(result.warnings));
     return;
   }
   result.broken = std::move(reasons);
@@ -203,12 +219,20 @@ class CalibratedBalance {
   Eigen::MatrixX2d zmp_;
 };
 
-/// Torques by joint from those by coordinate in the plan.
+/// Torques by joint from those by coordinate in the plan; NaN (statics) for joints that share a
+/// coordinate, whose torque is the sum of theirs.
 Eigen::VectorXd JointTorques(const RobotTree& tree, const Eigen::VectorXd& by_coordinate) {
   Eigen::VectorXd torques = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(tree.joints.size()),
                                                       std::numeric_limits<double>::quiet_NaN());
   for (Eigen::Index c = 0; c < by_coordinate.size(); ++c) {
     torques[tree.coordinate_joint[static_cast<std::size_t>(c)]] = by_coordinate[c];
+  }
+  for (const Joint& joint : tree.joints) {
+    if (!joint.mimic) continue;
+    for (const Drive& drive : DrivesOf(joint)) {
+      torques[tree.coordinate_joint[Size(drive.coordinate)]] =
+          std::numeric_limits<double>::quiet_NaN();
+    }
   }
   return torques;
 }
@@ -276,7 +300,17 @@ struct PlannedBalance {
 PlannedBalance BalanceOfPlan(const Project& project, const JointMotion& planned, MotionLoads loads,
                              CompensatedMotion& result) {
   PlannedBalance of;
-  if (CanBeChecked(project, planned)) {
+  const bool can_be_checked = CanBeChecked(project, planned);
+  if (can_be_checked && !IsEvenlySampled(planned)) {
+    const std::string uneven = "intervals between the plan's samples differ by more than a tenth";
+    if (loads == MotionLoads::kPlanned) {
+      throw InputError(planned.source + ": " + uneven +
+                       ", and torques need its accelerations; sample it evenly");
+    }
+    result.warnings.push_back(uneven + ": its balance was not checked; sample it evenly");
+    return of;
+  }
+  if (can_be_checked) {
     of.robot = StandProjectRobot(project, {});
     MotionForces forces;
     const SampledMotion sampled = ToSampled(*of.robot, planned);
@@ -304,15 +338,17 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
   JointMotion& motion = result.planned.motion;
   PlannedBalance of_plan = BalanceOfPlan(project, planned, options.loads, result);
   std::optional<CalibratedBalance>& balance = of_plan.balance;
-  Compensator compensator(model);
+  Compensator compensator(model, options.limits);
   CalibratedClearance clearance(project);
   result.has_clearance = !clearance.empty();
   result.clearance.value = std::numeric_limits<double>::infinity();
   const StandingFeet all = (StandingFeet{1} << model.feet.size()) - 1;
   CompensatorStatus status = 0;
+  std::string cut;  // since when a deflection is beyond its limit
   StoppedJoints stopped(project.tree);
   result.left = NothingLeft(model);
-  const Eigen::VectorXd speeds = Speeds(project.tree);
+  constexpr double kShare = 1.0 - 1e-6;  // room for the rounding in the file
+  const Eigen::VectorXd speeds = kShare * LargestSpeeds(project.tree);
   Eigen::VectorXd torque;
   std::vector<Transform> T_root_link(project.tree.links.size());
   for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {
@@ -329,7 +365,13 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
       compensator.LimitChanges(step * speeds);
       compensator.EaseChanges(options.ease_s / step);
     }
-    status |= compensator.Command(nominal, torque, feet);
+    const CompensatorStatus now = compensator.Command(nominal, torque, feet);
+    if (cut.empty() && (now & EC_DEFLECTION_CUT) != 0) {
+      cut = fmt::format(" from {:.2f} s on (limits: {:.3g} deg and {:.3g} mm)", TimeAt(planned, i),
+                        options.limits.largest_turn_rad * 180.0 / M_PI,
+                        1e3 * options.limits.largest_shift_m);
+    }
+    status |= now;
     stopped.Look(compensator, TimeAt(planned, i));
     LookAtLimbs(compensator, TimeAt(planned, i), result.left);
     motion.q.row(i) = compensator.command().transpose();
@@ -349,7 +391,7 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
   JudgeLeft(stopped.Describe(static_cast<int>(motion.q.rows())), options, result);
   if (balance) balance->Store(result);
   status &= ~CompensatorStatus{EC_JOINT_LIMIT | EC_CORRECTION_CUT};
-  if (status != 0) result.broken.push_back(DescribeStatus(status));
+  if (status != 0) result.broken.push_back(DescribeStatus(status) + cut);
   CheckLimits(project, result);
   return result;
 }

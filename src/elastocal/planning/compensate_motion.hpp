@@ -60,6 +60,8 @@ struct CompensateMotionOptions {
   /// Time in which a correction reaches its largest speed relative to the plan (a tenth of the
   /// joint's), and in which it brakes, s (Compensator::EaseChanges). 0: without limit.
   double ease_s = 0.0;
+  /// Limits of deflections and corrections; the low-pass filter of torques has no effect here.
+  CompensatorOptions limits = {};
 };
 
 /// Names of the coordinates that the motion does not contain.

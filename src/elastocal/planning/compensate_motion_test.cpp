@@ -189,6 +189,79 @@ TEST(CompensateMotion, CorrectionsKeepTheSpeedOfTheJoints) {
   EXPECT_LE(largest_speed(), limit);
 }
 
+/// The small humanoid, whose right hip follows the left one, at rest for two seconds.
+struct SharedHips {
+  Project project = ReadProject(SourceFile("tests/robots/mini_humanoid_project.yaml"));
+  JointMotion plan = RestOnSoles(project);
+};
+
+// The shared coordinate carries both hips' torques; each spring feels its own.
+TEST(CompensateMotion, JointsThatShareAMotorHaveTheirOwnTorques) {
+  const SharedHips robot;
+  StoredCalibration calibration = RandomCalibration(robot.project, 1);
+  for (auto& [name, value] : calibration.joint_errors) {
+    if (name.find("hip_yaw_pitch.compliance_z") != std::string::npos) value = 2e-3;
+  }
+  const RuntimeModel model =
+      MakeRuntimeModel(robot.project, calibration, RuntimeContent::kEverything);
+  const auto commands = [&](MotionLoads loads) {
+    const CompensatedMotion result =
+        CompensateMotion(robot.project, model, robot.plan, {.loads = loads, .most_left_m = 1.0});
+    return Eigen::VectorXd(result.planned.motion.q.row(1).transpose());
+  };
+  // At rest, torques of the plan are those of statics.
+  const Eigen::VectorXd statics = commands(MotionLoads::kStatics);
+  EXPECT_LT((commands(MotionLoads::kPlanned) - statics).cwiseAbs().maxCoeff(), 1e-4);
+}
+
+TEST(CompensateMotion, AJointIsNoFasterThanItsFollowerMayBe) {
+  SharedHips robot;
+  const RuntimeModel model = MakeRuntimeModel(robot.project, RandomCalibration(robot.project, 1),
+                                              RuntimeContent::kNominal);
+  const int leader = FindJoint(robot.project.tree, "left_hip_yaw_pitch");
+  const int follower = FindJoint(robot.project.tree, "right_hip_yaw_pitch");
+  const Eigen::Index c = robot.project.tree.joints[static_cast<std::size_t>(leader)].coordinate;
+  robot.plan.q.col(c).array() -= Eigen::Array3d(0.0, 0.1, 0.2);
+  robot.project.tree.joints[static_cast<std::size_t>(follower)].limits.velocity = 0.05;
+  const CompensatedMotion result =
+      CompensateMotion(robot.project, model, robot.plan, {.most_left_m = 1.0});
+  EXPECT_NEAR(result.velocity.value, 2.0, 0.1);
+  ASSERT_FALSE(result.broken.empty());
+  EXPECT_NE(result.broken.back().find("faster than a joint's limit: left_hip_yaw_pitch"),
+            std::string::npos)
+      << result.broken.back();
+}
+
+// Accelerations are differences of positions at equal intervals.
+TEST(CompensateMotion, BalanceIsCheckedWhereSamplesAreEven) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const RuntimeModel model =
+      MakeRuntimeModel(project, RandomCalibration(project, 1), RuntimeContent::kEverything);
+  JointMotion plan = RestOnSoles(project);
+  plan.time_s[2] = 1.5;
+  const CompensatedMotion result = CompensateMotion(project, model, plan);
+  EXPECT_FALSE(result.has_zmp);
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_NE(result.warnings[0].find("balance was not checked"), std::string::npos);
+  EXPECT_THROW(CompensateMotion(project, model, plan, {.loads = MotionLoads::kPlanned}),
+               InputError);
+}
+
+// A soft robot may bend by more than the limit, and its user may know that.
+TEST(CompensateMotion, ADeflectionBeyondItsLimitIsSaidWithTheLimit) {
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  const RuntimeModel model =
+      MakeRuntimeModel(project, RandomCalibration(project, 1), RuntimeContent::kEverything);
+  CompensateMotionOptions options;
+  options.limits.largest_turn_rad = 1e-4;
+  const CompensatedMotion cut = CompensateMotion(project, model, RestOnSoles(project), options);
+  ASSERT_FALSE(cut.broken.empty());
+  EXPECT_NE(cut.broken[0].find("from 0.00 s on (limits: 0.00573 deg and 20 mm)"), std::string::npos)
+      << cut.broken[0];
+  options.limits.largest_turn_rad = 0.05;
+  EXPECT_TRUE(CompensateMotion(project, model, RestOnSoles(project), options).broken.empty());
+}
+
 // Motions of arms often lack the fingers or the legs.
 TEST(CompensateMotion, JointsThatAMotionLeavesOpenAreAtRest) {
   const Project project = ReadProject(SourceFile("models/talos/project.yaml"));

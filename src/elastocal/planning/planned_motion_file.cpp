@@ -41,9 +41,7 @@ bool HasOwnDigits(std::string line, std::size_t positions) {
   for (std::size_t i = 0; i <= positions; ++i) {
     const std::optional<double> number = ParseNumber(cells[i]);
     if (!number) return false;
-    if (cells[i] != (i == 0 ? fmt::format("{:.4f}", *number) : fmt::format("{:.12g}", *number))) {
-      return false;
-    }
+    if (cells[i] != fmt::format("{:.12g}", *number)) return false;
   }
   return true;
 }
@@ -85,7 +83,7 @@ std::string FormatMotionTable(const RobotTree& tree, const PlannedMotion& planne
   }
   fmt::format_to(put, "\n");
   for (Eigen::Index i = 0; i < motion.q.rows(); ++i) {
-    fmt::format_to(put, "{:.4f}", motion.time_s[i]);
+    fmt::format_to(put, "{:.12g}", motion.time_s[i]);
     for (const double position : motion.q.row(i)) fmt::format_to(put, ",{:.12g}", position);
     if (!motion.support.empty()) {
       fmt::format_to(put, ",{}", SupportCell(tree, motion.support[static_cast<std::size_t>(i)]));
