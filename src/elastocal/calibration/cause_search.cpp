@@ -45,16 +45,6 @@ std::vector<std::vector<int>> Deal(std::vector<int> postures, int folds, Random&
   return dealt;
 }
 
-struct MeanGain {
-  double mean = 0.0, variance = 0.0;  ///< and the variance of the mean
-};
-
-MeanGain MeanOf(const Eigen::ArrayXd& values) {
-  const auto count = static_cast<double>(values.size());
-  const double mean = values.mean();
-  return {mean, (values - mean).square().sum() / std::max(1.0, count - 1.0) / count};
-}
-
 /// Forward search for causes over some of the postures.
 class Search {
  public:
@@ -289,10 +279,10 @@ class Search {
     error_ = rms(0);
     const Eigen::MatrixXd errors = squares(postures_, Eigen::all).cwiseSqrt();
     for (std::size_t k = 0; k < findings.size(); ++k) {
-      const MeanGain gain = MeanOf(errors.col(0) - errors.col(static_cast<Eigen::Index>(k) + 1));
+      const Eigen::VectorXd gains = errors.col(0) - errors.col(static_cast<Eigen::Index>(k) + 1);
       findings[k].gain = error_ - rms(static_cast<Eigen::Index>(k) + 1);
-      findings[k].mean_gain = gain.mean;
-      findings[k].gain_sd = std::sqrt(gain.variance);
+      findings[k].mean_gain = gains.mean();
+      findings[k].gain_sd = StandardErrorOfMean(gains);
     }
   }
 
@@ -309,7 +299,7 @@ class Search {
 
 /// By how much the errors of postures fall, from the squares of errors without causes and with
 /// them.
-Eigen::ArrayXd GainsOf(const Eigen::MatrixX2d& squares, const std::vector<int>& postures) {
+Eigen::VectorXd GainsOf(const Eigen::MatrixX2d& squares, const std::vector<int>& postures) {
   const Eigen::MatrixX2d errors = squares(postures, Eigen::all).cwiseSqrt();
   return errors.col(0) - errors.col(1);
 }
@@ -357,7 +347,7 @@ void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
       JudgeFold(study, inner, postures, all, fold, of_deal);
     }
     squares += of_deal / deals;
-    variance += MeanOf(GainsOf(of_deal, postures)).variance / deals;
+    variance += std::pow(StandardErrorOfMean(GainsOf(of_deal, postures)), 2) / deals;
   }
   Eigen::RowVector2d sums = Eigen::RowVector2d::Zero();
   double markers = 0.0;
@@ -368,11 +358,11 @@ void JudgeNested(const LinearStudy& study, const CauseSearchOptions& options,
   }
   result.error = std::sqrt(sums[0] / std::max(1.0, markers));
   result.nested_error = std::sqrt(sums[1] / std::max(1.0, markers));
-  const MeanGain gain = MeanOf(GainsOf(squares, postures));
-  result.nested_gain = gain.mean;
+  const Eigen::VectorXd gains = GainsOf(squares, postures);
+  result.nested_gain = gains.mean();
   result.nested_gain_sd = std::sqrt(variance * (1.0 / deals + folds / (folds - 1.0)));
-  result.accepted = IsCertain(gain.mean, result.nested_gain_sd, postures.size()) ||
-                    Matters(gain.mean, std::sqrt(gain.variance), result.error);
+  result.accepted = IsCertain(result.nested_gain, result.nested_gain_sd, postures.size()) ||
+                    Matters(result.nested_gain, StandardErrorOfMean(gains), result.error);
 }
 
 }  // namespace

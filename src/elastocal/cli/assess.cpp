@@ -87,8 +87,9 @@ std::vector<ChainPostures> GivenPostures(const AssessCommand& command, const Pro
   if (!command.postures.empty()) return ReadPostureFile(command.postures, project);
   const std::vector<std::filesystem::path> recordings(command.recordings.begin(),
                                                       command.recordings.end());
-  return RecordedPostures(project,
-                          ReadMeasurements(project, recordings, ReadFor::kAnyUse).calibration);
+  const Measurements measured = ReadMeasurements(project, recordings, ReadFor::kAnyUse);
+  PrintWarnings(measured.warnings, command.common.verbose);
+  return RecordedPostures(project, measured.calibration);
 }
 
 int Assess(const AssessCommand& command) {

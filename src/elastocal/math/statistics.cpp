@@ -71,4 +71,10 @@ double RootMeanSquare(const Eigen::VectorXd& values) {
   return std::sqrt(values.squaredNorm() / static_cast<double>(values.size()));
 }
 
+double StandardErrorOfMean(const Eigen::VectorXd& values) {
+  const auto count = static_cast<double>(values.size());
+  if (count < 2.0) return std::numeric_limits<double>::infinity();
+  return std::sqrt((values.array() - values.mean()).square().sum() / (count - 1.0) / count);
+}
+
 }  // namespace elastocal

@@ -40,4 +40,7 @@ double Median(const std::vector<double>& values);
 /// Root of the mean square; NaN for no values.
 double RootMeanSquare(const Eigen::VectorXd& values);
 
+/// Standard error of the mean of values that were drawn independently; infinite for fewer than two.
+double StandardErrorOfMean(const Eigen::VectorXd& values);
+
 }  // namespace elastocal

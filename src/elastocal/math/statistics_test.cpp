@@ -59,5 +59,12 @@ TEST(RootMeanSquare, IsNotTheMean) {
   EXPECT_TRUE(std::isnan(RootMeanSquare(Eigen::VectorXd())));
 }
 
+// By hand: the variance of 1, 2, 3, 6 about their mean 3 is 14 / 3, and that of the mean a quarter.
+TEST(StandardErrorOfMean, IsThatOfTheHandValue) {
+  EXPECT_DOUBLE_EQ(StandardErrorOfMean(Eigen::Vector4d(1, 2, 3, 6)), std::sqrt(14.0 / 12.0));
+  EXPECT_EQ(StandardErrorOfMean(Eigen::Vector2d(2, 2)), 0.0);
+  EXPECT_TRUE(std::isinf(StandardErrorOfMean(Eigen::VectorXd::Ones(1))));
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -17,6 +17,7 @@
 #include "elastocal/robot/linkage.hpp"
 #include "elastocal/screening/distance_parabola.hpp"
 #include "elastocal/screening/measured_faults.hpp"
+#include "elastocal/validation/deployment.hpp"
 #include "elastocal/validation/transfer.hpp"
 
 namespace elastocal {
@@ -27,7 +28,6 @@ constexpr double kLeftByOffset = 0.5;    // share of the squared distances
 constexpr double kLeftOfFit = 0.5;       // share of the error of the fit
 constexpr std::size_t kMostOffsets = 4;  // number of offsets that are corrected and fitted
 constexpr int kMostOfMotions = 120;      // moments of held-out trials
-constexpr double kWorse = 1.05;          // ratio of the error on them beyond chance
 constexpr int kNewtonSteps = 2;
 constexpr double kLeastCurvature = 1e-12;  // share of the squared distances
 constexpr int kFewestOfTrial = 3;          // postures
@@ -193,7 +193,7 @@ std::optional<RecordingFault> FindTrialOffset(const CalibrationResult& result,
       if (held_out.posture_count() > 0) {
         if (!predicted) predicted = ErrorOnHeldOut(result, base, held_out, options);
         const auto without_it = ErrorOnHeldOut(fit, base, held_out, options);
-        if (predicted && without_it && *without_it > kWorse * *predicted) continue;
+        if (predicted && without_it && *without_it > kWorseBeyondChance * *predicted) continue;
       }
       least = left;
       found = candidates[k];

@@ -211,12 +211,9 @@ double LargestError(const ObservedRobot& model, SourceUnit unit) {
 double GainInSds(const ObservedRobot& model, const Observations& observations,
                  const std::vector<Eigen::VectorXd>& before,
                  const std::vector<Eigen::VectorXd>& after, const Spread& spread) {
-  const Eigen::ArrayXd gain = ErrorsByPosture(model, observations, before, spread) -
-                              ErrorsByPosture(model, observations, after, spread);
-  const double mean = gain.mean();
-  const auto count = static_cast<double>(gain.size());
-  const double sd = std::sqrt((gain - mean).square().sum() / std::max(1.0, count - 1.0) / count);
-  return mean / std::max(sd, 1e-300);
+  const Eigen::VectorXd gain = ErrorsByPosture(model, observations, before, spread) -
+                               ErrorsByPosture(model, observations, after, spread);
+  return gain.mean() / std::max(StandardErrorOfMean(gain), 1e-300);
 }
 
 }  // namespace elastocal

@@ -2,12 +2,12 @@
 #include "elastocal/pipeline/choose_model.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "elastocal/math/statistics.hpp"
 #include "elastocal/recorded/recorded_model.hpp"
 #include "elastocal/screening/moved_markers.hpp"
 
@@ -16,10 +16,8 @@ namespace {
 
 /// Whether the second errors are smaller by more than twice the standard error of the difference.
 bool IsPlainlyLess(const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
-  const Eigen::ArrayXd gains = before - after;
-  const auto count = static_cast<double>(gains.size());
-  const double sd = std::sqrt((gains - gains.mean()).square().sum() / (count - 1.0) / count);
-  return gains.mean() > 2.0 * sd;
+  const Eigen::VectorXd gains = before - after;
+  return gains.mean() > 2.0 * StandardErrorOfMean(gains);
 }
 
 /// Whether the project names the elastic joints and does not name all.

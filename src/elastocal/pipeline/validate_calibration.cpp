@@ -202,8 +202,8 @@ bool ValidationRun::better() const {
 }
 
 bool ValidationRun::urdf_worse() const {
-  constexpr double kWorse = 1.05;  // as in JudgeDeployment
-  return urdf && urdf->metrics_all.rmse_3d > kWorse * transfer.uncalibrated.metrics_all.rmse_3d;
+  return urdf &&
+         urdf->metrics_all.rmse_3d > kWorseBeyondChance * transfer.uncalibrated.metrics_all.rmse_3d;
 }
 
 bool ValidationRun::plausible() const {

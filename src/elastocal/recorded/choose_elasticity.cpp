@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/statistics.hpp"
 #include "elastocal/recorded/find_base.hpp"
 #include "elastocal/robot/moving_coordinates.hpp"
 #include "elastocal/validation/model_comparison.hpp"
@@ -100,10 +101,9 @@ std::vector<ElasticityTrial> ChooseElasticity(const Recording& recording,
     }
     trial->kinds = candidate.kinds;
     if (best.size() == 0) best = trial->errors;
-    const Eigen::ArrayXd gains = best - trial->errors;
-    const auto count = static_cast<double>(gains.size());
+    const Eigen::VectorXd gains = best - trial->errors;
     trial->gain = gains.mean();
-    trial->gain_sd = std::sqrt((gains - trial->gain).square().sum() / (count - 1.0) / count);
+    trial->gain_sd = StandardErrorOfMean(gains);
     if (trial->gain > std::max(trial->gain_sd, kLeastGain * best.mean())) {
       best = trial->errors;
       chosen = tried.size();

@@ -32,6 +32,9 @@ Deployment ChooseDeployment(const ModelComparison& comparison, const CrossValida
 /// one, or the recording is wrong.
 inline constexpr double kImplausible = 2.0;
 
+/// Ratio of two errors on the same data above which one is worse by more than chance.
+inline constexpr double kWorseBeyondChance = 1.05;
+
 /// Expected error of a robot that was never calibrated, m: root mean square over the observations
 /// of a recording (about 50 postures) and over 20 robots whose geometry is drawn from the prior.
 double ExpectedError(const ErrorModel& model, const Recording& recording, const Prior& prior);

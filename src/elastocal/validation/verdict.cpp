@@ -16,7 +16,6 @@ constexpr double kManyOutliers = 0.05;     // share above which there is a remar
 constexpr double kSuspectedMarker = 0.25;  // share of the observations of a marker
 constexpr double kMostWeak = 0.5;          // share of the parameters that may be hardly excited
 constexpr double kAsGood = 1.01;           // ratio of errors below which they are as good
-constexpr double kWorse = 1.05;  // ratio of errors above which one is worse by more than chance
 constexpr const char* kAdvice =
     " Check the order and signs of the columns, the joints' zeros, and which link each marker is "
     "on.";
@@ -185,7 +184,7 @@ void JudgeDeployment(const Deployment& deployment, double expected_error, Verdic
   if (!judged || deployment.judged_on == "the fit" || deployment.urdf < deployment.uncalibrated) {
     return;
   }
-  const bool worse = deployment.urdf > kWorse * deployment.uncalibrated;
+  const bool worse = deployment.urdf > kWorseBeyondChance * deployment.uncalibrated;
   (worse ? verdict.objections : verdict.remarks)
       .push_back("on " + deployment.judged_on + " the calibrated robot description is " +
                  (worse ? "worse" : "no better") +
@@ -248,7 +247,8 @@ void JudgeHeldOut(const ErrorTable& table, ModelKind model, ModelKind urdf, Verd
                                ModelKindName(model) + " model errs by " + Number(1e3 * rmse, "mm") +
                                ", the " + ModelKindName(kind) + " one by " +
                                Number(1e3 * metrics.rmse_3d, "mm");
-      const bool worse = kind == ModelKind::kUncalibrated && rmse > kWorse * metrics.rmse_3d;
+      const bool worse =
+          kind == ModelKind::kUncalibrated && rmse > kWorseBeyondChance * metrics.rmse_3d;
       (worse ? verdict.objections : verdict.remarks).push_back(text);
     }
     const auto alone = row.metrics.find(urdf);
