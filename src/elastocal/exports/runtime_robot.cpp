@@ -176,6 +176,21 @@ ec_foot MakeFoot(const Project& project, const StoredRobot& robot, const Leg& le
   return foot;
 }
 
+/// The legs on which the robot can stand at run time: those with a sole in the project, or with a
+/// spring in the calibration, which only a leg has that stood. The lowest chain may be an arm that
+/// hangs down.
+std::vector<Leg> StandingLegs(const Project& project, const StoredCalibration& calibration,
+                              const StoredRobot& robot) {
+  std::vector<Leg> legs = FindLegs(project.tree, ChainNames(project));
+  std::erase_if(legs, [&](const Leg& leg) {
+    const bool stood = std::ranges::count(project.soles, leg.foot_link, &Sole::link) > 0 ||
+                       std::ranges::count(robot.model.legs, leg.foot_link, &SupportLeg::link) > 0 ||
+                       std::ranges::count(calibration.soles, leg.chain, &SoleSpring::leg) > 0;
+    return !stood;
+  });
+  return legs;
+}
+
 /// Marks the bodies of each leg: those beyond its first joint that belongs to no other leg.
 void MarkLegs(const RobotTree& tree, const std::vector<Leg>& legs, RuntimeModel& model) {
   model.leg_of_body.assign(model.mass.size(), -1);
@@ -218,9 +233,8 @@ void AddSoles(const StoredCalibration& calibration, RuntimeModel& model) {
   }
 }
 
-void AddLimbs(const Project& project, const StoredRobot& robot, bool elastic, RuntimeModel& model) {
-  const std::vector<NamedChain> chains = ChainNames(project);
-  const std::vector<Leg> legs = FindLegs(project.tree, chains);
+void AddLimbs(const Project& project, const StoredRobot& robot, const std::vector<Leg>& legs,
+              bool elastic, RuntimeModel& model) {
   for (const Leg& leg : legs) {
     model.foot_names.push_back(leg.chain);
     model.feet.push_back(MakeFoot(project, robot, leg, elastic));
@@ -263,6 +277,16 @@ std::vector<Marker> WithMarkersAtEnds(const Project& project) {
                        Eigen::Vector3d::Constant(0.1)});
   }
   return markers;
+}
+
+/// Throws InputError for a robot on balls, which roll where soles are taken to lie flat.
+void CheckSolesAreFlat(const Project& project) {
+  for (const Sole& sole : project.soles) {
+    if (!sole.ball_radius) continue;
+    throw InputError(project.file.string() + ": sole '" + project.tree.links[Size(sole.link)].name +
+                     "' is a ball, and commands can be corrected for flat soles only; the "
+                     "calibrated URDF serves such a robot");
+  }
 }
 
 }  // namespace
@@ -314,6 +338,7 @@ std::string NothingToCorrect() {
 RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& calibration,
                               RuntimeContent content) {
   CheckHasNoLinkages(project, "the robot at run time");
+  CheckSolesAreFlat(project);
   const bool rigid = content == RuntimeContent::kGeometry;
   const StoredRobot robot = RestoreRobot(project, rigid ? AsInUrdf(calibration) : calibration);
   RuntimeModel model;
@@ -324,7 +349,8 @@ RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& c
   AddLinks(project.tree, model);
   SetGravity(robot.model, calibration, model);
   if (content == RuntimeContent::kEverything) ApplyCauses(project.tree, calibration, model);
-  AddLimbs(project, robot, content == RuntimeContent::kEverything, model);
+  AddLimbs(project, robot, StandingLegs(project, calibration, robot),
+           content == RuntimeContent::kEverything, model);
   if (content == RuntimeContent::kEverything) AddSoles(calibration, model);
   FindBranches(model);
   return model;
