@@ -338,6 +338,10 @@ ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const Export
   if (at_run_time && MakeRuntimeModel(robot.project, kept.calibration).tips.empty()) {
     exported.notes.push_back("Commands are left as they are: " + NothingToCorrect());
   }
+  if (const std::string differs = GravityThatDiffers(robot.calibration);
+      at_run_time && !differs.empty()) {
+    exported.notes.push_back(differs);
+  }
   return exported;
 }
 

@@ -2,12 +2,15 @@
 #include "elastocal/exports/runtime_robot.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <set>
 #include <string>
 #include <tuple>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "elastocal/exports/runtime_causes.hpp"
 #include "elastocal/io/fingerprint.hpp"
@@ -143,15 +146,21 @@ std::vector<NamedChain> ChainNames(const Project& project) {
   return chains;
 }
 
-/// Sets the direction of gravity for a root link that was held while a posture table was measured.
+/// Sets the direction of gravity for a root link that was held while it was calibrated.
 void SetGravity(const ErrorModel& nominal, const StoredCalibration& calibration,
                 RuntimeModel& model) {
-  if (!calibration.T_ref_waist) return;
-  ErrorModel placed = nominal;
-  placed.T_ref_waist = *calibration.T_ref_waist;
-  const Geometry geometry =
-      ApplyErrors(placed, ErrorsByName(placed, calibration.joint_errors, calibration.externals));
-  const Eigen::Vector3d gravity = WaistPose(geometry).linear().transpose() * calibration.gravity;
+  Eigen::Vector3d gravity = kGravity;
+  if (calibration.held_root) {
+    gravity = -kGravity.norm() * calibration.held_root->up;
+  } else if (calibration.T_ref_waist) {
+    ErrorModel placed = nominal;
+    placed.T_ref_waist = *calibration.T_ref_waist;
+    const Geometry geometry =
+        ApplyErrors(placed, ErrorsByName(placed, calibration.joint_errors, calibration.externals));
+    gravity = WaistPose(geometry).linear().transpose() * calibration.gravity;
+  } else {
+    return;
+  }
   model.gravity.assign(gravity.begin(), gravity.end());
 }
 
@@ -333,6 +342,15 @@ StoredRobot RestoreRobot(const Project& project, const StoredCalibration& calibr
 std::string NothingToCorrect() {
   return "no chain of the project ends at a link that moves, so that nothing says what is to be "
          "where the nominal robot has it; 'chains: [{name: NAME, tip: LINK}]' was expected";
+}
+
+std::string GravityThatDiffers(const StoredCalibration& calibration) {
+  constexpr double kDegree = M_PI / 180.0, kAlike = 3.0 * kDegree;
+  if (!calibration.held_root || calibration.held_root->differs <= kAlike) return "";
+  return fmt::format(
+      "The root link was held in attitudes that differ by up to {:.0f} deg from their mean. At run "
+      "time a held root link has the mean: its deflections are right only where it is held so",
+      calibration.held_root->differs / kDegree);
 }
 
 RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& calibration,

@@ -29,6 +29,10 @@ RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& c
 /// Text that a model without tips can correct no command.
 std::string NothingToCorrect();
 
+/// Text for a robot whose trials held the root link in attitudes more than 3 degrees from their
+/// mean, which is the one at run time; else empty.
+std::string GravityThatDiffers(const StoredCalibration& calibration);
+
 /// The error model with the joints and legs that a calibration found elastic and all markers of the
 /// project, and the calibration's errors of joints and legs in the order of its parameters.
 struct StoredRobot {
