@@ -87,10 +87,8 @@ bool HasLoads(const ExportOptions& options) {
   return HasSprings(options) || options.beside_springs;
 }
 
-/// Whether the format is another form of the calibrated URDF.
-bool IsRigid(const ExportOptions& options) {
-  return !HasLoads(options) && options.format != "linkages";
-}
+/// Whether the format is another form of the calibrated URDF, or is used with it (linkages).
+bool IsRigid(const ExportOptions& options) { return !HasLoads(options); }
 
 CalibratedUrdf UrdfOf(const CalibratedRobot& robot, const StoredCalibration& calibration,
                       ZeroOffsets zero_offsets) {
@@ -261,7 +259,7 @@ void CheckExportOptions(const ExportOptions& options) {
   if (format != "mjcf" && options.mjcf_springs) {
     throw InputError("format " + format + ": --mjcf-springs is about format mjcf");
   }
-  if (options.beside_springs && (HasSprings(options) || format == "linkages")) {
+  if (options.beside_springs && HasSprings(options)) {
     throw InputError("format " + format +
                      ": --beside-springs is about formats without springs (urdf, ...)");
   }

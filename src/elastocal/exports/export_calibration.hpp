@@ -22,11 +22,11 @@ std::vector<ExportFormat> ExportFormats();
 /// Settings of ExportCalibration.
 struct ExportOptions {
   std::string format = "urdf";
-  std::string prefix;  ///< prefix of names in C; empty: the name of the robot
+  std::string prefix = {};  ///< prefix of names in C; empty: the name of the robot
   /// Only joints are exported whose displacement is at least this many standard deviations; the
   /// others stay nominal. 0: all.
   double least_significance = 0.0;
-  std::string version;              ///< version of the program, for comments
+  std::string version = {};         ///< version of the program, for comments
   std::filesystem::path mjcf = {};  ///< the nominal model that the format mjcf changes
   /// Only joints are exported that gain more than this on data that the calibration has not seen, m
   /// (FindHeldOutGains, for what the format carries); the others stay nominal. Empty: all.
@@ -61,7 +61,8 @@ struct ExportedCalibration {
 /// - urdf_encoder: the same, with the joints' zeros left to the encoders;
 /// - urdf_rising: as urdf_encoder, with the zeros added to the joints' element `calibration`
 ///   (rising);
-/// - linkages: the calibrated rods as a section of a project (io/linkage_file.hpp);
+/// - linkages: the calibrated rods, of the same geometry as urdf, as a section of a project
+///   (io/linkage_file.hpp);
 /// - xacro: what is added to the origins of the URDF, as xacro properties;
 /// - pal: the seven numbers of each joint (xyz, rpy, zero of the encoder) as YAML;
 /// - ros2_control: the zeros of the encoders as offsets of SimpleTransmission;

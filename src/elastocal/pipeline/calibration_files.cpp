@@ -67,7 +67,10 @@ std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
          .soles = run.soles});
     files["offsets.xacro"] = MakeXacroOffsets(*run.urdf);
     files["covariance.csv"] = MakeCovarianceCsv(result);
-    if (!project.tree.linkages.empty()) files["linkages.yaml"] = MakeLinkagesYaml(result);
+    if (!project.tree.linkages.empty()) {
+      // The rods belong to the URDF: springs carry a part of what rods of another fit explain.
+      files["linkages.yaml"] = MakeLinkagesYaml(same ? result : results[static_cast<int>(in_urdf)]);
+    }
   }
   files["report_data.json"] = MakeReportData(project, run);
   files["summary.json"] = MakeSummaryJson(run);

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `export` writes for single robots, without the program.
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "elastocal/exports/export_calibration.hpp"
+#include "elastocal/exports/runtime_robot.hpp"
+#include "elastocal/files/output_files.hpp"
+#include "elastocal/files/yaml_value.hpp"
+#include "elastocal/pipeline/result_folder.hpp"
+#include "tests/expect_input_error.hpp"
+#include "tests/runtime_calibration.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/test_files.hpp"
+
+namespace elastocal {
+namespace {
+
+class Exports : public testing::Test {
+ protected:
+  /// The robot with a calibration that is read from a file; `more` is added to that file.
+  CalibratedRobot Robot(const Project& project, const StoredCalibration& stored,
+                        const std::string& more = "") const {
+    CalibrationEstimate estimate;
+    estimate.robot = stored.robot;
+    estimate.nominal = stored.nominal;
+    estimate.recording = "drawn";
+    estimate.model = "full";
+    for (const Parameter& parameter : RestoreRobot(project, stored).model.parameters) {
+      const auto error = stored.joint_errors.find(parameter.name);
+      if (error == stored.joint_errors.end()) continue;
+      estimate.parameters.push_back({.name = parameter.name,
+                                     .unit = UnitName(parameter.unit),
+                                     .value = error->second,
+                                     .sd = 1e-3});
+    }
+    const auto file = scratch_.Write("calibration.yaml", MakeCalibrationYaml(estimate) + more);
+    return {project, ReadCalibration(file), {}};
+  }
+
+  ScratchFolder scratch_;
+  Project talos_ = ReadProject(SourceFile("models/talos/project.yaml"));
+};
+
+TEST_F(Exports, RodsAreThoseOfTheGeometryInTheUrdf) {
+  const Project project = ReadProject(SourceFile("tests/robots/linked_biped_project.yaml"));
+  StoredCalibration stored = RandomCalibration(project, 1);
+  const Rod& rod = project.tree.linkages.front().rods.front();
+  stored.joint_errors.at(rod.motor + ".length") = 1e-3;
+  const CalibratedRobot robot =
+      Robot(project, stored,
+            "urdf:\n  model: geometric\n  errors:\n    " + rod.motor + ".length: 0.004\n");
+  const auto length_mm = [&](bool beside_springs) {
+    const std::string text =
+        ExportCalibration(robot, {.format = "linkages", .beside_springs = beside_springs}).text;
+    const YamlValue yaml = YamlValue::Parse(text, "linkages");
+    return yaml.Get("linkages").Items()[0].Get("rods").Items()[0].Get("length_mm").Number();
+  };
+  EXPECT_NEAR(length_mm(false) - 1e3 * rod.length, 4.0, 1e-9);
+  EXPECT_NEAR(length_mm(true) - 1e3 * rod.length, 1.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace elastocal
