@@ -64,5 +64,18 @@ TEST_F(Exports, RodsAreThoseOfTheGeometryInTheUrdf) {
   EXPECT_NEAR(length_mm(true) - 1e3 * rod.length, 1.0, 1e-9);
 }
 
+TEST_F(Exports, NamesInCAreNoneOfTheHeadersOwn) {
+  const CalibratedRobot robot = Robot(talos_, RandomCalibration(talos_, 1));
+  for (const char* prefix : {"ec", "EC", "ec_arm"}) {
+    ExpectInputError([&] { ExportCalibration(robot, {.format = "c99", .prefix = prefix}); },
+                     {prefix, "'ec_'"});
+  }
+  EXPECT_FALSE(ExportCalibration(robot, {.format = "c99", .prefix = "echo"}).text.empty());
+  talos_.tree.name = "EC";
+  const CalibratedRobot renamed = Robot(talos_, RandomCalibration(talos_, 1));
+  EXPECT_NE(ExportCalibration(renamed, {.format = "c99"}).text.find("robot_ec_state"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -35,13 +35,21 @@ constexpr const char* kMadeBy = "Made by elastocal ";
 constexpr const char* kBesideSprings =
     "Geometry of the elastic model: for programs that correct elasticity themselves";
 
+/// Whether names with this prefix may be those that the header has of its own (ec_foot, EC_ARM).
+bool IsOfTheHeader(const std::string& prefix) {
+  std::string lower;
+  for (unsigned char c : prefix) lower += static_cast<char>(std::tolower(c));
+  return lower == "ec" || lower.starts_with("ec_");
+}
+
 /// Converts a name to one that is valid in C.
 std::string CPrefix(const std::string& name) {
   std::string prefix;
   for (unsigned char c : name) {
     prefix += std::isalnum(c) != 0 ? static_cast<char>(std::tolower(c)) : '_';
   }
-  if (prefix.empty() || std::isdigit(static_cast<unsigned char>(prefix[0])) != 0) {
+  if (prefix.empty() || std::isdigit(static_cast<unsigned char>(prefix[0])) != 0 ||
+      IsOfTheHeader(prefix)) {
     prefix = "robot_" + prefix;
   }
   return prefix;
@@ -205,6 +213,10 @@ std::string CHeaderOf(const CalibratedRobot& robot, const Kept& kept,
   if (!IsCName(prefix)) {
     throw InputError("--prefix " + prefix +
                      ": letters, digits and '_', the first no digit, were expected");
+  }
+  if (IsOfTheHeader(prefix)) {
+    throw InputError("--prefix " + prefix +
+                     ": names of the header's own begin with 'ec_'; another prefix was expected");
   }
   return MakeCHeader(MakeRuntimeModel(robot.project, kept.calibration),
                      {prefix, heading, ParameterComments(estimate), {}});
