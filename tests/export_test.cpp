@@ -77,5 +77,29 @@ TEST_F(Exports, NamesInCAreNoneOfTheHeadersOwn) {
             std::string::npos);
 }
 
+TEST_F(Exports, SayThatNothingGivesWay) {
+  StoredCalibration stored = RandomCalibration(talos_, 1);
+  const auto notes = [&] {
+    const ExportedCalibration exported =
+        ExportCalibration(Robot(talos_, stored), {.format = "runtime"});
+    return std::ranges::count_if(exported.notes, [](const std::string& note) {
+      return note.starts_with("Nothing gives way");
+    });
+  };
+  EXPECT_EQ(notes(), 0);
+  for (auto& [name, value] : stored.joint_errors) {
+    if (name.find(".compliance") != std::string::npos) value = 0.0;
+  }
+  EXPECT_EQ(notes(), 1);
+  const CalibratedRobot robot = Robot(talos_, stored);
+  ExpectInputError([&] { ExportCalibration(robot, {.beside_springs = true}); },
+                   {"--beside-springs", "no springs"});
+  ExpectInputError(
+      [&] {
+        ExportCalibration(robot, {.format = "mjcf", .mjcf = "robot.xml", .mjcf_springs = true});
+      },
+      {"--mjcf-springs", "no springs"});
+}
+
 }  // namespace
 }  // namespace elastocal

@@ -95,6 +95,25 @@ bool HasLoads(const ExportOptions& options) {
   return HasSprings(options) || options.beside_springs;
 }
 
+/// Whether anything gives way in the calibration.
+bool HasElasticity(const StoredCalibration& calibration) {
+  return std::ranges::any_of(calibration.soles, &SoleSpring::told) ||
+         std::ranges::any_of(calibration.joint_errors, [](const auto& error) {
+           return error.second != 0.0 && error.first.find(".compliance") != std::string::npos;
+         });
+}
+
+/// Throws InputError for an option about springs if there are none.
+void CheckHasElasticity(const StoredCalibration& calibration, const ExportOptions& options) {
+  if (HasElasticity(calibration)) return;
+  const std::string option = options.mjcf_springs     ? "--mjcf-springs"
+                             : options.beside_springs ? "--beside-springs"
+                                                      : "";
+  if (option.empty()) return;
+  throw InputError(option + ": " + calibration.source +
+                   " has no springs, so that the option would do nothing");
+}
+
 /// Whether the format is another form of the calibrated URDF, or is used with it (linkages).
 bool IsRigid(const ExportOptions& options) { return !HasLoads(options); }
 
@@ -338,6 +357,7 @@ std::vector<ExportFormat> ExportFormats() {
 
 ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options) {
   CheckExportOptions(options);
+  CheckHasElasticity(robot.calibration, options);
   const CalibrationEstimate estimate = ReadEstimate(robot.calibration.source);
   const Kept kept = KeepWhatHelps(robot, estimate, options);
   ExportedCalibration exported{TextOf(robot, kept, options), kept.comments};
@@ -347,6 +367,9 @@ ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const Export
   const bool at_run_time = options.format == "c99" || options.format == "runtime";
   if (at_run_time && MakeRuntimeModel(robot.project, kept.calibration).tips.empty()) {
     exported.notes.push_back("Commands are left as they are: " + NothingToCorrect());
+  }
+  if (HasSprings(options) && !HasElasticity(kept.calibration)) {
+    exported.notes.emplace_back("Nothing gives way in what is exported: geometry alone");
   }
   if (const std::string differs = GravityThatDiffers(robot.calibration);
       at_run_time && !differs.empty()) {

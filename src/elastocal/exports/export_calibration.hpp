@@ -72,8 +72,8 @@ struct ExportedCalibration {
 ///
 /// A URDF is read back and compared with the model in 1000 postures (1e-9) before it is returned.
 /// Throws InputError for an unknown format (the message names the nearest known one), for mjcf
-/// without a model or with one that is not that of the URDF, for options of another format, and
-/// with `least_gain` as FindHeldOutGains.
+/// without a model or with one that is not that of the URDF, for options of another format, for
+/// options about springs if the calibration has none, and with `least_gain` as FindHeldOutGains.
 ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options);
 
 /// Whether a text was written by ExportCalibration, by the comment that each of its formats
