@@ -101,5 +101,38 @@ TEST_F(Exports, SayThatNothingGivesWay) {
       {"--mjcf-springs", "no springs"});
 }
 
+TEST_F(Exports, UrdfsFindTheirMeshesFromAnotherFolder) {
+  std::string urdf = ReadFile(talos_.urdf);
+  const std::string mesh = R"(<mesh filename='meshes/a &amp; b&apos;s.stl'/>)";
+  const std::string visual = "<visual><geometry>" + mesh + "</geometry></visual>";
+  urdf.insert(urdf.find('>', urdf.find("<link")) + 1, visual);
+  ASSERT_EQ(urdf.find("/>" + visual), std::string::npos);
+  std::filesystem::create_directories(scratch_.path() / "robot");
+  std::filesystem::create_directories(scratch_.path() / "out");
+  talos_.urdf = scratch_.Write("robot/talos.urdf", urdf);
+  const CalibratedRobot robot = Robot(talos_, RandomCalibration(talos_, 1));
+  const std::string moved = R"(filename='../robot/meshes/a &#38; b&#39;s.stl')";
+  for (const char* format : {"urdf", "urdf_encoder", "urdf_rising"}) {
+    const auto written = [&](const std::string& file) {
+      return ExportCalibration(robot, {.format = format, .output = scratch_.path() / file}).text;
+    };
+    EXPECT_NE(written("robot/c.urdf").find(mesh), std::string::npos) << format;
+    EXPECT_NE(written("out/c.urdf").find(moved), std::string::npos) << format;
+  }
+  // The same for the file that `calibrate` writes.
+  const std::filesystem::path folder = scratch_.path() / "out";
+  OutputSet outputs;
+  DeclareResults(folder, {"talos_calibrated.urdf"}, outputs);
+  outputs.Prepare();
+  RunRecord record{.command = "calibrate",
+                   .command_line = "",
+                   .version = "1",
+                   .seed = {},
+                   .inputs = RecordInputs({talos_.urdf})};
+  SetResults(folder, {{"talos_calibrated.urdf", urdf}}, record, outputs);
+  outputs.Publish();
+  EXPECT_NE(ReadFile(folder / "talos_calibrated.urdf").find(moved), std::string::npos);
+}
+
 }  // namespace
 }  // namespace elastocal

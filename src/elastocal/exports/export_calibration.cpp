@@ -11,6 +11,7 @@
 
 #include "elastocal/description/calibrated_mjcf.hpp"
 #include "elastocal/description/calibrated_urdf.hpp"
+#include "elastocal/description/move_urdf.hpp"
 #include "elastocal/description/series_springs.hpp"
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/description/urdf_writer.hpp"
@@ -299,6 +300,15 @@ void CheckExportOptions(const ExportOptions& options) {
   }
 }
 
+/// A URDF with the heading, as it finds its meshes from the folder of the output.
+std::string FinishedUrdf(const CalibratedRobot& robot, const std::string& urdf,
+                         const std::vector<std::string>& heading, const ExportOptions& options) {
+  const std::string source = robot.project.urdf.string();
+  const std::string text = WithXmlComment(urdf, source, heading);
+  if (options.output.empty()) return text;
+  return MoveUrdf(text, source, robot.project.urdf.parent_path(), options.output.parent_path());
+}
+
 std::string TextOf(const CalibratedRobot& robot, const Kept& kept, const ExportOptions& options) {
   const std::string& format = options.format;
   const CalibrationEstimate estimate =
@@ -316,14 +326,14 @@ std::string TextOf(const CalibratedRobot& robot, const Kept& kept, const ExportO
   if (format == "linkages") return LinkagesOf(robot, kept, heading);
   const std::string source = robot.project.urdf.string();
   if (format == "urdf") {
-    return WithXmlComment(UrdfOf(robot, kept.calibration, ZeroOffsets::kOrigin).text, source,
-                          heading);
+    return FinishedUrdf(robot, UrdfOf(robot, kept.calibration, ZeroOffsets::kOrigin).text, heading,
+                        options);
   }
   const CalibratedUrdf apart = UrdfOf(robot, kept.calibration, ZeroOffsets::kEncoder);
-  if (format == "urdf_encoder") return WithXmlComment(apart.text, source, heading);
+  if (format == "urdf_encoder") return FinishedUrdf(robot, apart.text, heading, options);
   if (format == "urdf_rising") {
-    return WithXmlComment(ShiftReferencePositions(apart.text, source, apart.encoder_offsets),
-                          source, heading);
+    return FinishedUrdf(robot, ShiftReferencePositions(apart.text, source, apart.encoder_offsets),
+                        heading, options);
   }
   if (format == "mjcf") {
     return WithXmlComment(MjcfOf(robot, kept.calibration, apart, options), options.mjcf.string(),

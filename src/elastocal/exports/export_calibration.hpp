@@ -33,7 +33,7 @@ struct ExportOptions {
   std::optional<double> least_gain = {};
   /// Names of joints that are called differently in the MJCF (ReadMjcfJointNames).
   std::vector<std::string> mjcf_joints = {};
-  /// Path of the file to be written, relative to which an MJCF finds its meshes.
+  /// Path of the file to be written, relative to which a URDF or an MJCF finds its meshes.
   std::filesystem::path output = {};
   bool mjcf_springs = false;  ///< for the format mjcf: with springs in series with the joints
   /// For rigid formats: export the geometry of the elastic model (as c99 and runtime do), for
