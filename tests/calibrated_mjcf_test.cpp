@@ -111,14 +111,19 @@ void ExpectThatMujocoAgrees(const CalibratedMjcf& robot) {
   Random random(2);
   for (int posture = 0; posture < 1000; ++posture) {
     const Eigen::VectorXd q = RandomPosture(robot.calibrated, random);
+    Eigen::VectorXd encoders = q;
+    for (const auto& [joint, offset] : robot.offsets) {
+      const auto k = static_cast<std::size_t>(FindJoint(robot.calibrated, joint));
+      encoders[robot.calibrated.joints[k].coordinate] -= offset;
+    }
     for (const Joint& joint : robot.calibrated.joints) {
       const int id = mj_name2id(model.get(), mjOBJ_JOINT, joint.name.c_str());
       ASSERT_GE(id, 0) << joint.name;
-      const auto offset = robot.offsets.find(joint.name);
-      data->qpos[model->jnt_qposadr[id]] = joint.multiplier * q[joint.coordinate] + joint.offset -
-                                           (offset == robot.offsets.end() ? 0.0 : offset->second);
+      data->qpos[model->jnt_qposadr[id]] =
+          joint.multiplier * encoders[joint.coordinate] + joint.offset;
     }
-    mj_kinematics(model.get(), data.get());
+    mj_forward(model.get(), data.get());
+    for (int i = 0; i < data->ne; ++i) EXPECT_NEAR(data->efc_pos[i], 0.0, 1e-12);
     const std::vector<Transform> T_root_link = LinkTransforms(robot.calibrated, q);
     for (const Joint& joint : robot.calibrated.joints) {
       const auto link = static_cast<std::size_t>(joint.child_link);
@@ -138,6 +143,23 @@ TEST(CalibratedMjcf, MujocoStandsWhereTheCalibratedUrdfDoes) {
 
 TEST(CalibratedMjcf, AnglesOfTheFileMayBeRadiansAndLinksMayFollowOthers) {
   ExpectThatMujocoAgrees(Export("tests/robots/mini_humanoid.urdf", "<compiler angle=\"radian\"/>"));
+}
+
+// A mimic joint follows what its leader's encoder shows, whether or not the model has an equality.
+TEST(CalibratedMjcf, EqualitiesOfMimicJointsHoldAsBefore) {
+  CalibratedMjcf robot = Export("tests/robots/mini_humanoid.urdf", "<compiler angle=\"radian\"/>");
+  std::string equalities;
+  for (const Joint& joint : robot.nominal.joints) {
+    if (!joint.mimic) continue;
+    const int leader = robot.nominal.coordinate_joint[static_cast<std::size_t>(joint.coordinate)];
+    const std::string& name = robot.nominal.joints[static_cast<std::size_t>(leader)].name;
+    EXPECT_GT(std::abs(robot.offsets.at(name)), 1e-3);
+    equalities += fmt::format(R"(<joint joint1="{}" joint2="{}" polycoef="{} {} 0 0 0"/>)",
+                              joint.name, name, joint.offset, joint.multiplier);
+  }
+  ASSERT_FALSE(equalities.empty());
+  robot.text.insert(robot.text.find("</mujoco>"), "<equality>" + equalities + "</equality>");
+  ExpectThatMujocoAgrees(robot);
 }
 
 // The file that includes this one may state the unit.

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "elastocal/description/move_urdf.hpp"
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/math/random.hpp"
@@ -244,6 +245,21 @@ TEST(CalibratedUrdf, ADifferenceInABranchWithoutMarkersOrAFixedLinkIsAnError) {
   };
   EXPECT_THROW(write_into("finger_right_joint"), std::runtime_error);
   EXPECT_THROW(write_into("column_mount"), std::runtime_error);  // on the body that has the marker
+}
+
+TEST(MoveUrdf, OnlyRelativeNamesOfFilesChange) {
+  const std::string before =
+      "<robot name=\"r\"><!-- <mesh filename=\"c.stl\"/> -->\n<material name=\"m\"><texture "
+      "filename = \"../t.png\"/></material><link name=\"a\"><visual><geometry>\n"
+      "<mesh scale=\"1 1 1\" filename='meshes/a.stl'/><mesh filename=\"package://r/a.stl\"/>"
+      "<mesh filename=\"file:///r/a.stl\"/><mesh filename=\"/r/a.stl\"/>"
+      "<mesh filename=\"$(find r)/a.stl\"/></geometry></visual></link></robot>";
+  std::string after = before;
+  const std::string moved = MoveUrdf(before, "r.urdf", "robots/r", "out/a");
+  after.replace(after.find("../t.png"), 8, "../../robots/t.png");
+  after.replace(after.find("meshes/a.stl"), 12, "../../robots/r/meshes/a.stl");
+  EXPECT_EQ(moved, after);
+  EXPECT_EQ(MoveUrdf(before, "r.urdf", "robots/r", "robots/../robots/r"), before);
 }
 
 }  // namespace

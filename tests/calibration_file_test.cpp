@@ -57,6 +57,35 @@ TEST_F(CalibrationFile, ReadsBackWhatWasWrittenToTheLastBit) {
   EXPECT_EQ(stored.joint_errors.size(), static_cast<std::size_t>(joint_parameters));
 }
 
+// Trials have no frame in which the root link stays, so the file tells its attitude by itself.
+TEST_F(CalibrationFile, KnowsTheAttitudeOfARootLinkThatWasHeld) {
+  Placement& placement = result_.placement;
+  const auto hold = [&](double angle) {  // from y upwards about the horizontal x
+    Transform T = Transform::Identity();
+    T.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()).matrix();
+    placement.T_ref_waist.push_back(T);
+  };
+  hold(0.1);
+  hold(0.3);
+  hold(1.5);
+  placement.footings = {{.trial = 0, .leg = -1, .postures = {0, 1}},
+                        {.trial = 1, .leg = 0, .postures = {2}}};  // stands, is not held
+  const BesideCalibration beside{.gravity = {0.0, -9.81, 0.0}};
+  Write(MakeCalibrationYaml(result_, "there", ZeroOffsets::kOrigin, beside));
+  const StoredCalibration stored = ReadCalibration(file_);
+  EXPECT_FALSE(stored.T_ref_waist.has_value());
+  ASSERT_TRUE(stored.held_root.has_value());
+  const Eigen::Vector3d up(0.0, std::cos(0.2), -std::sin(0.2));
+  EXPECT_LT((stored.held_root->up - up).norm(), 1e-12);
+  EXPECT_NEAR(stored.held_root->differs, 0.1, 1e-12);
+  // Upside down as well as upright: no mean tells how it will be held.
+  placement.T_ref_waist[1].linear() =
+      Eigen::AngleAxisd(0.1 + 0.99 * M_PI, Eigen::Vector3d::UnitX()).matrix();
+  placement.footings[0].postures = {0, 0, 1};
+  Write(MakeCalibrationYaml(result_, "there", ZeroOffsets::kOrigin, beside));
+  EXPECT_FALSE(ReadCalibration(file_).held_root.has_value());
+}
+
 // The prior of a fleet is written like this.
 TEST_F(CalibrationFile, AnEstimateKeepsItsGauge) {
   CalibrationEstimate estimate =

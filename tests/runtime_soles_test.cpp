@@ -93,6 +93,33 @@ TEST_F(Runtime, OnTwoFeetLegsGiveWayAsTheirSpringsDo) {
   EXPECT_NEAR(sinks(3), on_two, 0.02 * on_two);
 }
 
+// The arm is the lowest chain of its project.
+TEST(RuntimeFeet, AnArmThatHangsDownIsNone) {
+  const Project project = ReadProject(SourceFile("examples/talos_left_arm/project.yaml"));
+  const RuntimeModel model = MakeRuntimeModel(project, RandomCalibration(project, 1));
+  EXPECT_TRUE(model.feet.empty());
+  ASSERT_EQ(model.tips.size(), 1U);
+  EXPECT_EQ(model.tips[0].foot, -1);
+}
+
+TEST_F(Runtime, WithoutSolesFeetAreTheLegsThatStood) {
+  const std::vector<std::string> legs = {"leg_left", "leg_right"};
+  EXPECT_EQ(MakeRuntimeModel(project_, stored_).foot_names, legs);
+  project_.soles.clear();
+  EXPECT_EQ(MakeRuntimeModel(project_, stored_).foot_names, legs);
+  std::erase_if(stored_.joint_errors, [](const auto& error) {
+    return error.first.starts_with("leg_left.") || error.first.starts_with("leg_right.");
+  });
+  EXPECT_TRUE(MakeRuntimeModel(project_, stored_).foot_names.empty());
+  stored_.soles = {{.leg = "leg_right", .changes = 2, .compliance = 1e-6, .sd = 1e-8}};
+  EXPECT_EQ(MakeRuntimeModel(project_, stored_).foot_names, std::vector<std::string>{"leg_right"});
+}
+
+TEST_F(Runtime, BallsAreRefused) {
+  project_.soles[0].ball_radius = 0.02;
+  ExpectInputError([&] { Make(); }, {"project.yaml", "left_sole_link", "is a ball", "flat soles"});
+}
+
 // The place of one foot has no moments, but a compiler that orders sums anew leaves rounding there.
 TEST(RuntimeShares, RoundingGivesOneFootNoSlope) {
   double slope[2] = {1.0, 1.0};

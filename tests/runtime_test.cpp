@@ -97,6 +97,16 @@ TEST_F(Runtime, AHeldRootHasTheGravityOfItsCalibration) {
   EXPECT_GT(largest, 3e-4);
 }
 
+TEST_F(Runtime, AHeldRootOfTrialsHasTheirGravity) {
+  stored_.held_root = HeldRoot{.up = {0.6, 0.0, 0.8}, .differs = 0.01};
+  const std::vector<double> gravity = MakeRuntimeModel(project_, stored_).gravity;
+  EXPECT_NEAR(gravity[0], -0.6 * 9.81, 1e-12);
+  EXPECT_NEAR(gravity[2], -0.8 * 9.81, 1e-12);
+  EXPECT_EQ(GravityThatDiffers(stored_), "");
+  stored_.held_root->differs = 0.2;
+  EXPECT_NE(GravityThatDiffers(stored_).find("up to 11 deg"), std::string::npos);
+}
+
 TEST_F(Runtime, LegsGiveWayAsEquation6Says) {
   Compensator robot = Make();
   const Eigen::VectorXd q = Posture(4);

@@ -141,6 +141,16 @@ std::string WriteQuaternion(const Eigen::Matrix3d& R) {
   return FormatNumber(quaternion.w()) + " " + WriteVector(quaternion.vec());
 }
 
+/// By coordinate, what is added to the position of its encoder.
+Eigen::VectorXd ByCoordinate(const RobotTree& tree, const std::map<std::string, double>& offsets) {
+  Eigen::VectorXd by_coordinate = Eigen::VectorXd::Zero(tree.coordinate_count());
+  for (const auto& [name, offset] : offsets) {
+    const int joint = FindJoint(tree, name);
+    by_coordinate[tree.joints[static_cast<std::size_t>(joint)].coordinate] = offset;
+  }
+  return by_coordinate;
+}
+
 std::vector<SeriesSpring> SpringsOf(const std::vector<SeriesSpring>& springs, std::size_t joint) {
   std::vector<SeriesSpring> found;
   for (const SeriesSpring& spring : springs) {
@@ -282,6 +292,7 @@ std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& sourc
   const double angle_unit = stated       ? *stated
                             : has_angles ? UnstatedAngleUnit(root, nominal, bodies, defaults)
                                          : 1.0;  // nothing is written that has a unit
+  const Eigen::VectorXd offsets = ByCoordinate(nominal, encoder_offsets);
   std::vector<XmlEdit> edits;
   std::optional<SpringWriter> writer;
   if (!springs.empty()) writer.emplace(mjcf, root, angle_unit);
@@ -300,12 +311,14 @@ std::string MakeCalibratedMjcf(const std::string& mjcf, const std::string& sourc
     }
     edits.push_back(SetAttribute(body.element, "pos", WriteVector(T.translation())));
     edits.push_back(SetAttribute(body.element, "quat", WriteQuaternion(T.linear())));
-    const auto offset = encoder_offsets.find(joint.name);
-    if (offset == encoder_offsets.end() || offset->second == 0.0) continue;
+    // A mimic joint has no encoder and shows what those of its leaders say. With its `ref`, an
+    // equality of the model holds as before, because MuJoCo counts both joints from theirs.
+    const double offset = JointRate(joint, offsets);
+    if (offset == 0.0) continue;
     const double unit = joint.type == JointType::kRevolute ? angle_unit : 1.0;
     const auto given = defaults.Giver(element, body.childclass, "ref");
     const double ref = given ? given->Number("ref") : 0.0;
-    edits.push_back(SetAttribute(element, "ref", FormatNumber(ref - offset->second / unit)));
+    edits.push_back(SetAttribute(element, "ref", FormatNumber(ref - offset / unit)));
   }
   if (!writer) return ApplyEdits(mjcf, std::move(edits));
   std::vector<XmlEdit> all = std::move(*writer).Edits();

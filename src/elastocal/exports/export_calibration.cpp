@@ -11,6 +11,7 @@
 
 #include "elastocal/description/calibrated_mjcf.hpp"
 #include "elastocal/description/calibrated_urdf.hpp"
+#include "elastocal/description/move_urdf.hpp"
 #include "elastocal/description/series_springs.hpp"
 #include "elastocal/description/urdf_reader.hpp"
 #include "elastocal/description/urdf_writer.hpp"
@@ -35,13 +36,21 @@ constexpr const char* kMadeBy = "Made by elastocal ";
 constexpr const char* kBesideSprings =
     "Geometry of the elastic model: for programs that correct elasticity themselves";
 
+/// Whether names with this prefix may be those that the header has of its own (ec_foot, EC_ARM).
+bool IsOfTheHeader(const std::string& prefix) {
+  std::string lower;
+  for (unsigned char c : prefix) lower += static_cast<char>(std::tolower(c));
+  return lower == "ec" || lower.starts_with("ec_");
+}
+
 /// Converts a name to one that is valid in C.
 std::string CPrefix(const std::string& name) {
   std::string prefix;
   for (unsigned char c : name) {
     prefix += std::isalnum(c) != 0 ? static_cast<char>(std::tolower(c)) : '_';
   }
-  if (prefix.empty() || std::isdigit(static_cast<unsigned char>(prefix[0])) != 0) {
+  if (prefix.empty() || std::isdigit(static_cast<unsigned char>(prefix[0])) != 0 ||
+      IsOfTheHeader(prefix)) {
     prefix = "robot_" + prefix;
   }
   return prefix;
@@ -87,10 +96,27 @@ bool HasLoads(const ExportOptions& options) {
   return HasSprings(options) || options.beside_springs;
 }
 
-/// Whether the format is another form of the calibrated URDF.
-bool IsRigid(const ExportOptions& options) {
-  return !HasLoads(options) && options.format != "linkages";
+/// Whether anything gives way in the calibration.
+bool HasElasticity(const StoredCalibration& calibration) {
+  return std::ranges::any_of(calibration.soles, &SoleSpring::told) ||
+         std::ranges::any_of(calibration.joint_errors, [](const auto& error) {
+           return error.second != 0.0 && error.first.find(".compliance") != std::string::npos;
+         });
 }
+
+/// Throws InputError for an option about springs if there are none.
+void CheckHasElasticity(const StoredCalibration& calibration, const ExportOptions& options) {
+  if (HasElasticity(calibration)) return;
+  const std::string option = options.mjcf_springs     ? "--mjcf-springs"
+                             : options.beside_springs ? "--beside-springs"
+                                                      : "";
+  if (option.empty()) return;
+  throw InputError(option + ": " + calibration.source +
+                   " has no springs, so that the option would do nothing");
+}
+
+/// Whether the format is another form of the calibrated URDF, or is used with it (linkages).
+bool IsRigid(const ExportOptions& options) { return !HasLoads(options); }
 
 CalibratedUrdf UrdfOf(const CalibratedRobot& robot, const StoredCalibration& calibration,
                       ZeroOffsets zero_offsets) {
@@ -208,6 +234,10 @@ std::string CHeaderOf(const CalibratedRobot& robot, const Kept& kept,
     throw InputError("--prefix " + prefix +
                      ": letters, digits and '_', the first no digit, were expected");
   }
+  if (IsOfTheHeader(prefix)) {
+    throw InputError("--prefix " + prefix +
+                     ": names of the header's own begin with 'ec_'; another prefix was expected");
+  }
   return MakeCHeader(MakeRuntimeModel(robot.project, kept.calibration),
                      {prefix, heading, ParameterComments(estimate), limits});
 }
@@ -261,13 +291,22 @@ void CheckExportOptions(const ExportOptions& options) {
   if (format != "mjcf" && options.mjcf_springs) {
     throw InputError("format " + format + ": --mjcf-springs is about format mjcf");
   }
-  if (options.beside_springs && (HasSprings(options) || format == "linkages")) {
+  if (options.beside_springs && HasSprings(options)) {
     throw InputError("format " + format +
                      ": --beside-springs is about formats without springs (urdf, ...)");
   }
   if (format != "flex_joints" && options.hip_damping) {
     throw InputError("format " + format + ": --hip-damping is about format flex_joints");
   }
+}
+
+/// A URDF with the heading, as it finds its meshes from the folder of the output.
+std::string FinishedUrdf(const CalibratedRobot& robot, const std::string& urdf,
+                         const std::vector<std::string>& heading, const ExportOptions& options) {
+  const std::string source = robot.project.urdf.string();
+  const std::string text = WithXmlComment(urdf, source, heading);
+  if (options.output.empty()) return text;
+  return MoveUrdf(text, source, robot.project.urdf.parent_path(), options.output.parent_path());
 }
 
 std::string TextOf(const CalibratedRobot& robot, const Kept& kept, const ExportOptions& options) {
@@ -287,14 +326,14 @@ std::string TextOf(const CalibratedRobot& robot, const Kept& kept, const ExportO
   if (format == "linkages") return LinkagesOf(robot, kept, heading);
   const std::string source = robot.project.urdf.string();
   if (format == "urdf") {
-    return WithXmlComment(UrdfOf(robot, kept.calibration, ZeroOffsets::kOrigin).text, source,
-                          heading);
+    return FinishedUrdf(robot, UrdfOf(robot, kept.calibration, ZeroOffsets::kOrigin).text, heading,
+                        options);
   }
   const CalibratedUrdf apart = UrdfOf(robot, kept.calibration, ZeroOffsets::kEncoder);
-  if (format == "urdf_encoder") return WithXmlComment(apart.text, source, heading);
+  if (format == "urdf_encoder") return FinishedUrdf(robot, apart.text, heading, options);
   if (format == "urdf_rising") {
-    return WithXmlComment(ShiftReferencePositions(apart.text, source, apart.encoder_offsets),
-                          source, heading);
+    return FinishedUrdf(robot, ShiftReferencePositions(apart.text, source, apart.encoder_offsets),
+                        heading, options);
   }
   if (format == "mjcf") {
     return WithXmlComment(MjcfOf(robot, kept.calibration, apart, options), options.mjcf.string(),
@@ -328,6 +367,7 @@ std::vector<ExportFormat> ExportFormats() {
 
 ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options) {
   CheckExportOptions(options);
+  CheckHasElasticity(robot.calibration, options);
   const CalibrationEstimate estimate = ReadEstimate(robot.calibration.source);
   const Kept kept = KeepWhatHelps(robot, estimate, options);
   ExportedCalibration exported{TextOf(robot, kept, options), kept.comments};
@@ -337,6 +377,13 @@ ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const Export
   const bool at_run_time = options.format == "c99" || options.format == "runtime";
   if (at_run_time && MakeRuntimeModel(robot.project, kept.calibration).tips.empty()) {
     exported.notes.push_back("Commands are left as they are: " + NothingToCorrect());
+  }
+  if (HasSprings(options) && !HasElasticity(kept.calibration)) {
+    exported.notes.emplace_back("Nothing gives way in what is exported: geometry alone");
+  }
+  if (const std::string differs = GravityThatDiffers(robot.calibration);
+      at_run_time && !differs.empty()) {
+    exported.notes.push_back(differs);
   }
   return exported;
 }

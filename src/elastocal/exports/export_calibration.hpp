@@ -23,18 +23,18 @@ std::vector<ExportFormat> ExportFormats();
 /// Settings of ExportCalibration.
 struct ExportOptions {
   std::string format = "urdf";
-  std::string prefix;  ///< prefix of names in C; empty: the name of the robot
+  std::string prefix = {};  ///< prefix of names in C; empty: the name of the robot
   /// Only joints are exported whose displacement is at least this many standard deviations; the
   /// others stay nominal. 0: all.
   double least_significance = 0.0;
-  std::string version;              ///< version of the program, for comments
+  std::string version = {};         ///< version of the program, for comments
   std::filesystem::path mjcf = {};  ///< the nominal model that the format mjcf changes
   /// Only joints are exported that gain more than this on data that the calibration has not seen, m
   /// (FindHeldOutGains, for what the format carries); the others stay nominal. Empty: all.
   std::optional<double> least_gain = {};
   /// Names of joints that are called differently in the MJCF (ReadMjcfJointNames).
   std::vector<std::string> mjcf_joints = {};
-  /// Path of the file to be written, relative to which an MJCF finds its meshes.
+  /// Path of the file to be written, relative to which a URDF or an MJCF finds its meshes.
   std::filesystem::path output = {};
   bool mjcf_springs = false;  ///< for the format mjcf: with springs in series with the joints
   /// For rigid formats: export the geometry of the elastic model (as c99 and runtime do), for
@@ -64,7 +64,8 @@ struct ExportedCalibration {
 /// - urdf_encoder: the same, with the joints' zeros left to the encoders;
 /// - urdf_rising: as urdf_encoder, with the zeros added to the joints' element `calibration`
 ///   (rising);
-/// - linkages: the calibrated rods as a section of a project (io/linkage_file.hpp);
+/// - linkages: the calibrated rods, of the same geometry as urdf, as a section of a project
+///   (io/linkage_file.hpp);
 /// - xacro: what is added to the origins of the URDF, as xacro properties;
 /// - pal: the seven numbers of each joint (xyz, rpy, zero of the encoder) as YAML;
 /// - ros2_control: the zeros of the encoders as offsets of SimpleTransmission;
@@ -74,8 +75,8 @@ struct ExportedCalibration {
 ///
 /// A URDF is read back and compared with the model in 1000 postures (1e-9) before it is returned.
 /// Throws InputError for an unknown format (the message names the nearest known one), for mjcf
-/// without a model or with one that is not that of the URDF, for options of another format, and
-/// with `least_gain` as FindHeldOutGains.
+/// without a model or with one that is not that of the URDF, for options of another format, for
+/// options about springs if the calibration has none, and with `least_gain` as FindHeldOutGains.
 ExportedCalibration ExportCalibration(const CalibratedRobot& robot, const ExportOptions& options);
 
 /// Whether a text was written by ExportCalibration, by the comment that each of its formats

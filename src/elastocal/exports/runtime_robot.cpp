@@ -2,12 +2,15 @@
 #include "elastocal/exports/runtime_robot.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <set>
 #include <string>
 #include <tuple>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "elastocal/exports/runtime_causes.hpp"
 #include "elastocal/io/fingerprint.hpp"
@@ -143,15 +146,21 @@ std::vector<NamedChain> ChainNames(const Project& project) {
   return chains;
 }
 
-/// Sets the direction of gravity for a root link that was held while a posture table was measured.
+/// Sets the direction of gravity for a root link that was held while it was calibrated.
 void SetGravity(const ErrorModel& nominal, const StoredCalibration& calibration,
                 RuntimeModel& model) {
-  if (!calibration.T_ref_waist) return;
-  ErrorModel placed = nominal;
-  placed.T_ref_waist = *calibration.T_ref_waist;
-  const Geometry geometry =
-      ApplyErrors(placed, ErrorsByName(placed, calibration.joint_errors, calibration.externals));
-  const Eigen::Vector3d gravity = WaistPose(geometry).linear().transpose() * calibration.gravity;
+  Eigen::Vector3d gravity = kGravity;
+  if (calibration.held_root) {
+    gravity = -kGravity.norm() * calibration.held_root->up;
+  } else if (calibration.T_ref_waist) {
+    ErrorModel placed = nominal;
+    placed.T_ref_waist = *calibration.T_ref_waist;
+    const Geometry geometry =
+        ApplyErrors(placed, ErrorsByName(placed, calibration.joint_errors, calibration.externals));
+    gravity = WaistPose(geometry).linear().transpose() * calibration.gravity;
+  } else {
+    return;
+  }
   model.gravity.assign(gravity.begin(), gravity.end());
 }
 
@@ -174,6 +183,21 @@ ec_foot MakeFoot(const Project& project, const StoredRobot& robot, const Leg& le
     foot.compliance[parameter.axis + (force ? 0 : 3)] = robot.errors[i];
   }
   return foot;
+}
+
+/// The legs on which the robot can stand at run time: those with a sole in the project, or with a
+/// spring in the calibration, which only a leg has that stood. The lowest chain may be an arm that
+/// hangs down.
+std::vector<Leg> StandingLegs(const Project& project, const StoredCalibration& calibration,
+                              const StoredRobot& robot) {
+  std::vector<Leg> legs = FindLegs(project.tree, ChainNames(project));
+  std::erase_if(legs, [&](const Leg& leg) {
+    const bool stood = std::ranges::count(project.soles, leg.foot_link, &Sole::link) > 0 ||
+                       std::ranges::count(robot.model.legs, leg.foot_link, &SupportLeg::link) > 0 ||
+                       std::ranges::count(calibration.soles, leg.chain, &SoleSpring::leg) > 0;
+    return !stood;
+  });
+  return legs;
 }
 
 /// Marks the bodies of each leg: those beyond its first joint that belongs to no other leg.
@@ -218,9 +242,8 @@ void AddSoles(const StoredCalibration& calibration, RuntimeModel& model) {
   }
 }
 
-void AddLimbs(const Project& project, const StoredRobot& robot, bool elastic, RuntimeModel& model) {
-  const std::vector<NamedChain> chains = ChainNames(project);
-  const std::vector<Leg> legs = FindLegs(project.tree, chains);
+void AddLimbs(const Project& project, const StoredRobot& robot, const std::vector<Leg>& legs,
+              bool elastic, RuntimeModel& model) {
   for (const Leg& leg : legs) {
     model.foot_names.push_back(leg.chain);
     model.feet.push_back(MakeFoot(project, robot, leg, elastic));
@@ -263,6 +286,16 @@ std::vector<Marker> WithMarkersAtEnds(const Project& project) {
                        Eigen::Vector3d::Constant(0.1)});
   }
   return markers;
+}
+
+/// Throws InputError for a robot on balls, which roll where soles are taken to lie flat.
+void CheckSolesAreFlat(const Project& project) {
+  for (const Sole& sole : project.soles) {
+    if (!sole.ball_radius) continue;
+    throw InputError(project.file.string() + ": sole '" + project.tree.links[Size(sole.link)].name +
+                     "' is a ball, and commands can be corrected for flat soles only; the "
+                     "calibrated URDF serves such a robot");
+  }
 }
 
 }  // namespace
@@ -311,9 +344,19 @@ std::string NothingToCorrect() {
          "where the nominal robot has it; 'chains: [{name: NAME, tip: LINK}]' was expected";
 }
 
+std::string GravityThatDiffers(const StoredCalibration& calibration) {
+  constexpr double kDegree = M_PI / 180.0, kAlike = 3.0 * kDegree;
+  if (!calibration.held_root || calibration.held_root->differs <= kAlike) return "";
+  return fmt::format(
+      "The root link was held in attitudes that differ by up to {:.0f} deg from their mean. At run "
+      "time a held root link has the mean: its deflections are right only where it is held so",
+      calibration.held_root->differs / kDegree);
+}
+
 RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& calibration,
                               RuntimeContent content) {
   CheckHasNoLinkages(project, "the robot at run time");
+  CheckSolesAreFlat(project);
   const bool rigid = content == RuntimeContent::kGeometry;
   const StoredRobot robot = RestoreRobot(project, rigid ? AsInUrdf(calibration) : calibration);
   RuntimeModel model;
@@ -324,7 +367,8 @@ RuntimeModel MakeRuntimeModel(const Project& project, const StoredCalibration& c
   AddLinks(project.tree, model);
   SetGravity(robot.model, calibration, model);
   if (content == RuntimeContent::kEverything) ApplyCauses(project.tree, calibration, model);
-  AddLimbs(project, robot, content == RuntimeContent::kEverything, model);
+  AddLimbs(project, robot, StandingLegs(project, calibration, robot),
+           content == RuntimeContent::kEverything, model);
   if (content == RuntimeContent::kEverything) AddSoles(calibration, model);
   FindBranches(model);
   return model;

@@ -10,7 +10,7 @@ namespace elastocal {
 std::string EscapedXml(const std::string& text) {
   std::string safe;
   for (char c : text) {
-    if (c == '<' || c == '>' || c == '&' || c == '"') {
+    if (c == '<' || c == '>' || c == '&' || c == '"' || c == '\'') {
       safe += "&#" + std::to_string(static_cast<int>(c)) + ";";
     } else {
       safe += c;

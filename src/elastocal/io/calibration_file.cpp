@@ -205,6 +205,7 @@ std::string MakeCalibrationYaml(const CalibrationResult& result, const std::stri
   yaml << YAML::EndMap;
   yaml << YAML::Key << "interval_95_in_sd" << YAML::Value << FormatNumber(result.interval_factor);
   if (result.placement.empty()) EmitWaist(result.model.T_ref_waist, beside.gravity, yaml);
+  if (const auto held = FindHeldRoot(result.placement, beside.gravity)) EmitHeldRoot(*held, yaml);
   EmitMarkers(result.model, yaml);
   if (beside.uncalibrated != nullptr) EmitUncalibrated(*beside.uncalibrated, yaml);
   if (beside.in_urdf != nullptr) EmitInUrdf(*beside.in_urdf, yaml);
@@ -321,6 +322,7 @@ StoredCalibration ReadCalibration(const std::filesystem::path& file) {
       stored.gravity = -kGravity.norm() * direction.normalized();
     }
   }
+  stored.held_root = ReadHeldRoot(root);
   if (const auto uncalibrated = root.Find("uncalibrated")) {
     for (const auto& [name, value] : uncalibrated->Entries()) {
       stored.uncalibrated_externals[name] = value.Number();

@@ -10,6 +10,7 @@
 #include "elastocal/calibration/calibrate.hpp"
 #include "elastocal/calibration/sole_springs.hpp"
 #include "elastocal/description/calibrated_urdf.hpp"
+#include "elastocal/io/held_root.hpp"
 #include "elastocal/robot/statics.hpp"
 #include "elastocal/validation/common_parameters.hpp"
 
@@ -29,7 +30,7 @@ struct BesideCalibration {
   /// The result whose geometry the calibrated URDF has, if that is another one: a rigid model that
   /// predicts better than the geometry of the elastic model alone. Null: the same result.
   const CalibrationResult* in_urdf = nullptr;
-  Eigen::Vector3d gravity = kGravity;  ///< posture table: gravity in its frame, m/s^2
+  Eigen::Vector3d gravity = kGravity;  ///< in the frame of the recording, m/s^2
   /// 3-D RMSE of the result on its own markers, outliers included, m; 0: not known.
   double rmse_3d = 0.0;
   HeldOutErrors held_out = {};
@@ -71,6 +72,7 @@ struct StoredCalibration {
   /// Posture table: nominal pose of the waist in the frame of the recording.
   std::optional<Transform> T_ref_waist;
   Eigen::Vector3d gravity = kGravity;  ///< in that frame, m/s^2
+  std::optional<HeldRoot> held_root;   ///< trials: the attitude in which the root link was held
   /// Waist (deviations from `T_ref_waist`) and markers, by parameter name, SI: of the calibrated
   /// model, and of the uncalibrated one fitted to the same recording (empty if the file does not
   /// have it).

@@ -76,7 +76,12 @@ LinksByName FindSupports(const Project& project) {
     chains.push_back({chain.name, chain.from_link, chain.tip_link});
     supports[project.tree.links[chain.tip_link].name] = {chain.tip_link};
   }
-  const std::vector<Leg> legs = FindLegs(project.tree, chains);
+  std::vector<Leg> legs = FindLegs(project.tree, chains);
+  if (!project.soles.empty()) {  // of a robot that stands, an arm that hangs down is no leg
+    std::erase_if(legs, [&](const Leg& leg) {
+      return std::ranges::count(project.soles, leg.foot_link, &Sole::link) == 0;
+    });
+  }
   if (legs.size() == 2) supports["both"] = {legs[0].foot_link, legs[1].foot_link};
   supports["none"] = {};
   return supports;

@@ -16,10 +16,6 @@
 namespace elastocal {
 namespace {
 
-std::string UrdfName(const Project& project) {
-  return project.urdf.stem().string() + "_calibrated.urdf";
-}
-
 HeldOutErrors HeldOutErrorsOf(const CalibrationRun& run) {
   if (!run.held_out && run.cross_validation.folds == 0) return {};
   const Deployment& deployed = run.deployment;
@@ -41,9 +37,17 @@ std::string MakeReportData(const Project& project, CalibrationRun& run) {
 
 }  // namespace
 
+std::string CalibratedUrdfName(const std::filesystem::path& urdf) {
+  return urdf.stem().string() + "_calibrated.urdf";
+}
+
 std::vector<std::string> CalibrationFileNames(const Project& project) {
-  std::vector<std::string> names = {UrdfName(project), "calibration.yaml", "offsets.xacro",
-                                    "covariance.csv",  "summary.json",     "report_data.json"};
+  std::vector<std::string> names = {CalibratedUrdfName(project.urdf),
+                                    "calibration.yaml",
+                                    "offsets.xacro",
+                                    "covariance.csv",
+                                    "summary.json",
+                                    "report_data.json"};
   if (!project.tree.linkages.empty()) names.emplace_back("linkages.yaml");
   return names;
 }
@@ -56,7 +60,7 @@ std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
     const auto& results = run.comparison.results;
     const ModelKind in_urdf = run.deployment.urdf_kind;
     const bool same = in_urdf == result.kind || in_urdf == ModelKind::kRigid;
-    files[UrdfName(project)] = run.urdf->text;
+    files[CalibratedUrdfName(project.urdf)] = run.urdf->text;
     files["calibration.yaml"] = MakeCalibrationYaml(
         result, run.recording.source, run.zero_offsets,
         {.uncalibrated = &results[static_cast<int>(ModelKind::kUncalibrated)],
@@ -67,7 +71,10 @@ std::map<std::string, std::string> MakeCalibrationFiles(const Project& project,
          .soles = run.soles});
     files["offsets.xacro"] = MakeXacroOffsets(*run.urdf);
     files["covariance.csv"] = MakeCovarianceCsv(result);
-    if (!project.tree.linkages.empty()) files["linkages.yaml"] = MakeLinkagesYaml(result);
+    if (!project.tree.linkages.empty()) {
+      // The rods belong to the URDF: springs carry a part of what rods of another fit explain.
+      files["linkages.yaml"] = MakeLinkagesYaml(same ? result : results[static_cast<int>(in_urdf)]);
+    }
   }
   files["report_data.json"] = MakeReportData(project, run);
   files["summary.json"] = MakeSummaryJson(run);

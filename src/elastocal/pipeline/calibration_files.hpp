@@ -12,6 +12,9 @@
 
 namespace elastocal {
 
+/// Name of the calibrated URDF in the folder of a calibration.
+std::string CalibratedUrdfName(const std::filesystem::path& urdf);
+
 /// Names of the files that a calibration writes into its folder (docs/formats.md). To be deployed
 /// are ROBOT_calibrated.urdf, calibration.yaml, offsets.xacro and covariance.csv; summary.json and
 /// report_data.json tell how the calibration went.

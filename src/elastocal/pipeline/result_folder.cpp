@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "elastocal/description/move_urdf.hpp"
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/calibration_file.hpp"
 #include "elastocal/io/covariance_file.hpp"
@@ -144,6 +145,17 @@ std::string MakePageOf(const fs::path& folder, const std::set<std::string>& name
   return MakePage(PageTemplate(), MakeReportJson(sources));
 }
 
+/// The text of a result. A calibrated URDF is the user's, from another folder.
+std::string InFolder(const fs::path& folder, const std::string& name, const std::string& contents,
+                     const RunRecord& record) {
+  for (const InputRecord& input : record.inputs) {
+    const fs::path urdf = fs::path(record.folder) / input.file;
+    if (urdf.extension() != ".urdf" || CalibratedUrdfName(urdf) != name) continue;
+    return MoveUrdf(contents, (folder / name).string(), urdf.parent_path(), folder);
+  }
+  return contents;
+}
+
 }  // namespace
 
 const char* const kNoPage =
@@ -163,7 +175,7 @@ std::string SetResults(const fs::path& folder, const std::map<std::string, std::
                        const RunRecord& record, OutputSet& outputs) {
   std::set<std::string> names = RegularFiles(folder);
   for (const auto& [name, contents] : files) {
-    outputs.Set(folder / name, contents);
+    outputs.Set(folder / name, InFolder(folder, name, contents, record));
     names.insert(name);
   }
   outputs.Set(folder / kRuns, UpdateRuns(EarlierRuns(folder), record));

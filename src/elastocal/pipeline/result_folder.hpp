@@ -28,7 +28,8 @@ namespace elastocal {
 void DeclareResults(const std::filesystem::path& folder, const std::vector<std::string>& names,
                     OutputSet& outputs);
 
-/// Sets the contents of declared files by name, of runs.json with this run added, and of
+/// Sets the contents of declared files by name (in the calibrated URDF of an input, relative names
+/// of meshes lead back to them), of runs.json with this run added, and of
 /// report.html for the folder's new state. Returns why there is no report.html; empty where there
 /// is one. Call it once for a folder, after Prepare.
 std::string SetResults(const std::filesystem::path& folder,

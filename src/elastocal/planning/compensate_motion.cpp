@@ -252,7 +252,10 @@ StandingFeet FeetOfLinks(const Project& project, const RuntimeModel& model,
       feet |= StandingFeet{1} << f;
       found = true;
     }
-    if (!found) throw InputError("support '" + name + "': it is no foot of the robot");
+    if (!found)
+      throw InputError("support '" + name +
+                       "': it is no foot of the robot; feet are the links of 'standing: "
+                       "{soles: [...]}' of the project");
   }
   return feet;
 }
@@ -278,13 +281,6 @@ namespace {
 
 /// Throws InputError for a robot whose commands cannot be corrected.
 void CheckCanBeCorrected(const Project& project, const RuntimeModel& model) {
-  for (const Sole& sole : project.soles) {
-    if (!sole.ball_radius) continue;
-    throw InputError(project.file.string() + ": sole '" +
-                     project.tree.links[static_cast<std::size_t>(sole.link)].name +
-                     "' is a ball, and commands can be corrected for flat soles only; the "
-                     "calibrated URDF serves such a robot");
-  }
   if (model.tips.empty()) {
     throw InputError(project.file.string() + ": " + NothingToCorrect());
   }
@@ -342,7 +338,8 @@ CompensatedMotion CompensateMotion(const Project& project, const RuntimeModel& m
   CalibratedClearance clearance(project);
   result.has_clearance = !clearance.empty();
   result.clearance.value = std::numeric_limits<double>::infinity();
-  const StandingFeet all = (StandingFeet{1} << model.feet.size()) - 1;
+  // Without soles the root link is held, as 'plan' does.
+  const StandingFeet all = project.soles.empty() ? 0 : (StandingFeet{1} << model.feet.size()) - 1;
   CompensatorStatus status = 0;
   std::string cut;  // since when a deflection is beyond its limit
   StoppedJoints stopped(project.tree);

@@ -77,6 +77,24 @@ TEST(CompensateMotion, BalanceIsThatOfTheCalibratedRobot) {
   EXPECT_NEAR(margin(0.02 / of_trunk), -0.01, 1e-4);
 }
 
+// `plan` holds the root link of a robot without soles, and its motion has no column `support`.
+TEST(CompensateMotion, WithoutSolesTheRootLinkIsHeld) {
+  Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  project.soles.clear();
+  const RuntimeModel model = MakeRuntimeModel(project, RandomCalibration(project, 1));
+  ASSERT_EQ(model.feet.size(), 2U);
+  JointMotion plan;
+  plan.q = project.motion.rest.transpose();
+  const CompensatedMotion silent = CompensateMotion(project, model, plan);
+  const auto supported = [&](const std::vector<int>& links) {
+    plan.support = {links};
+    return CompensateMotion(project, model, plan);
+  };
+  EXPECT_EQ(silent.planned.motion.q, supported({}).planned.motion.q);
+  const int left = FindLink(project.tree, "left_sole_link");
+  EXPECT_NE(silent.planned.motion.q, supported({left}).planned.motion.q);
+}
+
 /// TALOS with random errors, and a plan that stays in its posture of rest.
 class AtRest {
  public:
