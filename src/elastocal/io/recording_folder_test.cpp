@@ -166,6 +166,15 @@ TEST_F(RecordingFolderTest, MergesFolders) {
       {other.string(), "another axis up"});
 }
 
+TEST_F(RecordingFolderTest, RefusesALabelThatOccursTwice) {
+  ScriptedTrial played = Write("a", {.postures = 4});
+  Write("b", {.postures = 4});
+  const std::string label = project_.markers.front().name;
+  played.markers.names.back() = label + "#2";  // as readers call it
+  WriteQtmTsv(folder_.path() / "a.tsv", played.markers);
+  ExpectInputError([&] { Read(); }, {"a.tsv", "two trajectories have the label", label});
+}
+
 TEST_F(RecordingFolderStudy, KnowsWhichAxisIsUpAndWhatLagToExpect) {
   Write("a", {.postures = 12, .lag_s = 1000.0});
   Write("b", {.postures = 8});
