@@ -19,6 +19,7 @@
 #include "elastocal/posture/chain_problem.hpp"
 #include "elastocal/posture/mirror.hpp"
 #include "elastocal/robot/moving_chain.hpp"
+#include "elastocal/robot/physical_inertia.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -293,6 +294,18 @@ void WarnOfGuesses(ProjectDraft& draft) {
   }
 }
 
+void WarnOfMasses(ProjectDraft& draft) {
+  if (!HasMasses(draft.tree)) {
+    draft.warnings.push_back(
+        "the robot description has no masses, which statics, plans of motions and the simulator "
+        "need");
+    return;
+  }
+  for (std::string& warning : InertiaWarnings(draft.tree)) {
+    draft.warnings.push_back(std::move(warning));
+  }
+}
+
 /// Gives the draft a root link that looks ahead.
 void TakeAttitude(const RootAttitude& attitude, const std::string& source, const MeshPlaces& places,
                   RobotTree& described, ProjectDraft& draft) {
@@ -331,6 +344,7 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
   draft.urdf = AddSoleLinks(draft.urdf, described, draft.soles);
   draft.tree = ParseUrdf(draft.urdf, source);
   NameTips(described, draft);
+  WarnOfMasses(draft);
   draft.stance = ChooseStance(draft.tree, draft.limbs, draft.soles);
   RestOnFeet(draft, semantics);
   if (!draft.stands) draft.stance.reset();
