@@ -159,6 +159,16 @@ TEST_F(Plan, ReplacesMotionsButNoJointLog) {
   EXPECT_EQ(Run(more).exit_code, 0) << "a motion of compensate is replaced";
 }
 
+TEST_F(Plan, ValidationMotionsNeedTheSectionDesign) {
+  const ProgramResult refused =
+      RunProgram("plan " + SourceFile("tests/robots/arm6_project.yaml").string() + " -o " +
+                 Path("motion.csv") + " --kind random");
+  EXPECT_EQ(refused.exit_code, 3) << refused.out;
+  EXPECT_NE(refused.err.find("no section 'design' with 'chains'"), std::string::npos)
+      << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(Path("motion.csv")));
+}
+
 TEST_F(Plan, RefusesBadInput) {
   EXPECT_EQ(Run("").exit_code, 2);
   const std::string none = scratch_.Write("none.yaml",
