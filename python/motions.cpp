@@ -152,7 +152,7 @@ void SavePlan(const PyPlan& planned, const Path& file, const Path& trajectory,
   }
   OutputSet outputs;
   outputs.Protect({planned.project.file, planned.project.urdf});
-  files.Declare(outputs);
+  files.Declare(planned.project.tree, outputs);
   outputs.Prepare();
   SetMotionFiles(files, planned.project, planned.plan, planned.trials, outputs);
   outputs.Publish();

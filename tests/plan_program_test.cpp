@@ -8,6 +8,7 @@
 
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/io/motion_file.hpp"
+#include "elastocal/planning/planned_motion_file.hpp"
 #include "tests/arm_posture.hpp"
 #include "tests/run_program.hpp"
 #include "tests/scratch_folder.hpp"
@@ -133,6 +134,39 @@ TEST_F(Plan, MotionsOfChainsAreNotNamedLikeJointLogs) {
   EXPECT_EQ(refused.exit_code, 3);
   EXPECT_NE(refused.err.find("arm_left_motion.csv"), std::string::npos) << refused.err;
   EXPECT_EQ(ReadFile(other), "t,leg\n0,0\n");
+}
+
+// A joint log begins with the time, as a planned motion does.
+TEST_F(Plan, ReplacesMotionsButNoJointLog) {
+  const std::string postures = scratch_.Write("postures.yaml", kPostures);
+  const std::string log = "time,leg_left_1_joint\n0,0\n0.01,0\n";
+  scratch_.Write("motion.csv", log);
+  const std::string more = "--quiet --postures " + postures;
+  const ProgramResult refused = Run(more);
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("motion.csv"), std::string::npos) << refused.err;
+  EXPECT_EQ(ReadFile(Path("motion.csv")), log);
+
+  std::filesystem::remove(Path("motion.csv"));
+  ASSERT_EQ(Run(more).exit_code, 0);
+  EXPECT_EQ(Run(more).exit_code, 0) << "its own motion is replaced";
+  // `compensate` leaves out columns that its motion has not.
+  const Project project = ReadProject(SourceFile("models/talos/project.yaml"));
+  PlannedMotion bare;
+  bare.motion = ReadMotion(Path("motion.csv"), project);
+  bare.motion.support.clear();
+  scratch_.Write("motion.csv", FormatMotionTable(project.tree, bare));
+  EXPECT_EQ(Run(more).exit_code, 0) << "a motion of compensate is replaced";
+}
+
+TEST_F(Plan, ValidationMotionsNeedTheSectionDesign) {
+  const ProgramResult refused =
+      RunProgram("plan " + SourceFile("tests/robots/arm6_project.yaml").string() + " -o " +
+                 Path("motion.csv") + " --kind random");
+  EXPECT_EQ(refused.exit_code, 3) << refused.out;
+  EXPECT_NE(refused.err.find("no section 'design' with 'chains'"), std::string::npos)
+      << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(Path("motion.csv")));
 }
 
 TEST_F(Plan, RefusesBadInput) {

@@ -132,6 +132,20 @@ TEST_F(Simulate, DoesNotReplaceRecordingsThatItDidNotMake) {
   EXPECT_NE(ReadFile(Folder("lab/upper_random.tsv")), markers);
 }
 
+// Somebody added a trial of a real robot to the experiment.yaml of a simulation.
+TEST_F(Simulate, KeepsRecordingsThatWereAddedToItsExperiment) {
+  ASSERT_EQ(Run("one", "--quiet --trials upper_random").exit_code, 0);
+  const std::string markers = scratch_.Write("one/real.tsv", "the laboratory's");
+  const std::string joints = scratch_.Write("one/real.csv", "the laboratory's, too");
+  const std::string experiment = ReadFile(Folder("one/experiment.yaml"));
+  scratch_.Write("one/experiment.yaml", experiment +
+                                            "  - {name: real, kind: random, chains: [arm], "
+                                            "markers: real.tsv, joints: real.csv}\n");
+  ASSERT_EQ(Run("one", "--quiet --seed 2 --trials upper_random").exit_code, 0);
+  EXPECT_EQ(ReadFile(markers), "the laboratory's");
+  EXPECT_EQ(ReadFile(joints), "the laboratory's, too");
+}
+
 TEST_F(Simulate, ReplacesAnEarlierSimulationAsAWhole) {
   ASSERT_EQ(Run("one", "--quiet").exit_code, 0);
   const std::string notes = scratch_.Write("one/notes.txt", "mine");

@@ -35,3 +35,6 @@ milliseconds = np.arange(4) * 100
 np.savez("joints_datetime.npz", time=(1700000000000 + milliseconds).astype("datetime64[ms]").astype("datetime64[ns]"),
          elbow=np.ones(4))
 np.savez("joints_timedelta.npz", t=(milliseconds * 1000).astype("timedelta64[us]"), elbow=np.ones(4))
+matrix = np.array([[0.3, 0.2, 0.1], [0.4, 0.5, 0.6]])
+np.savez("joints_endings.npz", t=np.arange(2) * 0.1, names=np.array(["lift_position", "wheel_velocity", "a"]),
+         positions=matrix, efforts=10.0 * matrix)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <sstream>
 
@@ -128,8 +129,11 @@ int Init(const InitCommand& command) {
   DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();
   const std::filesystem::path described = copy.empty() ? std::filesystem::path(command.urdf) : copy;
+  const std::filesystem::path staged =
+      copy.empty() ? std::filesystem::path(command.urdf) : outputs.StagingPath(copy);
+  if (!copy.empty()) std::ofstream(staged, std::ios::binary) << draft.urdf;
+  RequireReadable(draft, project, staged);
   outputs.Set(project, FormatDraft(draft, described.filename().string()));
-  outputs.Set(copy, draft.urdf);
   outputs.Set(command.common.json_file, FormatDraftSummary(draft));
   outputs.Publish();
 

@@ -160,7 +160,7 @@ int Plan(const PlanCommand& command) {
   std::vector<std::filesystem::path> inputs = {command.project, project.urdf};
   if (!command.postures.empty()) inputs.emplace_back(command.postures);
   outputs.Protect(inputs);
-  files.Declare(outputs);
+  files.Declare(project.tree, outputs);
   DeclarePlanningReport(command.output, outputs);
   DeclareJson(command.common.json_file, outputs);
   outputs.Prepare();

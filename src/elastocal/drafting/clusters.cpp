@@ -37,7 +37,7 @@ struct Candidate {
 };
 
 /// Selects points that are far from each other, those in the open first.
-std::vector<Candidate> Spread(std::vector<Candidate> all, std::size_t count, double enough) {
+std::vector<Candidate> SpreadOut(std::vector<Candidate> all, std::size_t count, double enough) {
   std::vector<Candidate> chosen;
   std::vector<double> distance(all.size(), std::numeric_limits<double>::infinity());
   while (chosen.size() < std::min(count, all.size())) {
@@ -204,7 +204,7 @@ class ClusterPlacer {
     constexpr std::size_t kCandidates = 40;
     constexpr double kLargest = 0.13, kLeast = 0.03;
     const double largest = kLargest * longest_, least = kLeast * longest_;
-    const auto candidates = Spread(CandidatesOf(body), kCandidates, 0.3 * largest);
+    const auto candidates = SpreadOut(CandidatesOf(body), kCandidates, 0.3 * largest);
     // Positions are measured with a ruler, to 10 mm. Labels are told apart by sides that differ by
     // more, so sides are as different as shapes allow: below 0.7, triangles become flat.
     for (const double alike : {0.75, 0.82, 0.88}) {

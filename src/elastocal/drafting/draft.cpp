@@ -19,6 +19,7 @@
 #include "elastocal/posture/chain_problem.hpp"
 #include "elastocal/posture/mirror.hpp"
 #include "elastocal/robot/moving_chain.hpp"
+#include "elastocal/robot/physical_inertia.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
@@ -53,6 +54,17 @@ std::string WholeName(const Limb& limb) {
   return limb.from_body == 0 ? limb.name : TrunkName(limb) + "_" + limb.name;
 }
 
+/// The name, with a number where a chain has it already: a neck with two ears is a trunk as well
+/// as the waist is.
+std::string FreeName(const ProjectDraft& draft, const std::string& name) {
+  std::string free = name;
+  const auto taken = [&](const DraftedChain& chain) { return chain.name == free; };
+  for (int number = 2; std::ranges::any_of(draft.chains, taken); ++number) {
+    free = name + "_" + std::to_string(number);
+  }
+  return free;
+}
+
 /// Adds the chains. Limbs on a moving trunk have two: one of their own joints, and one from the
 /// root link. A limb without mirror image is one chain from the root link; a trunk without a head
 /// is a chain itself.
@@ -70,7 +82,8 @@ void AddChains(ProjectDraft& draft) {
     draft.chains.push_back({WholeName(limb), 0, limb.tip_link});
   }
   for (const auto& [body, name] : trunks) {
-    if (!done.contains(body)) draft.chains.push_back({name, 0, BodyLink(draft.tree, body)});
+    if (done.contains(body)) continue;
+    draft.chains.push_back({FreeName(draft, name), 0, BodyLink(draft.tree, body), true});
   }
 }
 
@@ -139,7 +152,7 @@ void AddSetups(ProjectDraft& draft) {
     draft.designs.push_back(std::move(setup));
   }
   for (const DraftedChain& chain : draft.chains) {
-    if (chain.name != "torso" && chain.name != "waist") continue;
+    if (!chain.trunk) continue;
     draft.designs.push_back(SetupOf(draft, chain.name, 0, chain.tip_link));
     draft.designs.back().support = Feet(draft, -1);
   }
@@ -281,6 +294,18 @@ void WarnOfGuesses(ProjectDraft& draft) {
   }
 }
 
+void WarnOfMasses(ProjectDraft& draft) {
+  if (!HasMasses(draft.tree)) {
+    draft.warnings.push_back(
+        "the robot description has no masses, which statics, plans of motions and the simulator "
+        "need");
+    return;
+  }
+  for (std::string& warning : InertiaWarnings(draft.tree)) {
+    draft.warnings.push_back(std::move(warning));
+  }
+}
+
 /// Gives the draft a root link that looks ahead.
 void TakeAttitude(const RootAttitude& attitude, const std::string& source, const MeshPlaces& places,
                   RobotTree& described, ProjectDraft& draft) {
@@ -319,6 +344,7 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
   draft.urdf = AddSoleLinks(draft.urdf, described, draft.soles);
   draft.tree = ParseUrdf(draft.urdf, source);
   NameTips(described, draft);
+  WarnOfMasses(draft);
   draft.stance = ChooseStance(draft.tree, draft.limbs, draft.soles);
   RestOnFeet(draft, semantics);
   if (!draft.stands) draft.stance.reset();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -22,6 +23,7 @@ inline constexpr double kDraftedEffort = 0.85;
 struct DraftedChain {
   std::string name;
   int from_link = 0, tip_link = 0;
+  bool trunk = false;  ///< ends at a moving part that carries limbs
 };
 
 /// Contents of a drafted project file, as far as the robot description tells.
@@ -60,6 +62,11 @@ ProjectDraft DraftProject(const std::string& urdf, const std::string& source,
 /// The draft as a project file (docs/formats.md), with comments that tell the origin of its values.
 /// `urdf` is the path of the robot description relative to that file.
 std::string FormatDraft(const ProjectDraft& draft, const std::string& urdf);
+
+/// Throws InputError with the reason if the draft cannot be read as the project `file`. `urdf` is
+/// a file with the draft's robot description.
+void RequireReadable(const ProjectDraft& draft, const std::filesystem::path& file,
+                     const std::filesystem::path& urdf);
 
 /// The draft as JSON.
 std::string FormatDraftSummary(const ProjectDraft& draft);

@@ -7,8 +7,11 @@
 
 #include "elastocal/drafting/draft.hpp"
 #include "elastocal/files/yaml_word.hpp"
+#include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
+#include "elastocal/project/project.hpp"
 #include "elastocal/tables/json_text.hpp"
+#include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
@@ -227,6 +230,17 @@ class DraftWriter {
 
 std::string FormatDraft(const ProjectDraft& draft, const std::string& urdf) {
   return DraftWriter(draft).Write(urdf);
+}
+
+void RequireReadable(const ProjectDraft& draft, const std::filesystem::path& file,
+                     const std::filesystem::path& urdf) {
+  try {
+    ParseProject(FormatDraft(draft, std::filesystem::absolute(urdf).string()), file);
+  } catch (const InputError& error) {
+    throw InputError("the draft of " + Quote(draft.tree.name) +
+                     " is no project that can be read, so nothing is written (" + error.what() +
+                     "); please report this with the robot description");
+  }
 }
 
 std::string FormatDraftSummary(const ProjectDraft& draft) {

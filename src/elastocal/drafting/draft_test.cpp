@@ -16,6 +16,7 @@
 #include "elastocal/tables/read_file.hpp"
 #include "elastocal/tables/text.hpp"
 #include "tests/draft_files.hpp"
+#include "tests/expect_input_error.hpp"
 #include "tests/test_robots.hpp"
 
 namespace elastocal {
@@ -162,6 +163,31 @@ TEST(Draft, MissingMeshesAreOneWarning) {
   const ProjectDraft large = DraftProject(PoleUrdf(mesh, "10"), "pole", {}, places);
   EXPECT_TRUE(large.shapes.bodies[0].guessed);
   EXPECT_NE(large.warnings[0].find("200 m"), std::string::npos) << large.warnings[0];
+}
+
+// Waist and neck carry two arms and two ears, so that both are trunks. Their chains had one name.
+TEST(Draft, EachTrunkHasAChainOfItsOwnName) {
+  const std::string urdf =
+      "<robot name='r'><link name='base'><inertial><mass value='20'/><inertia ixx='1' iyy='1' "
+      "izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>" +
+      RodXml("waist", "base", "0 0 0.3") + RodXml("l1", "waist", "0.2 0.2 0.3") +
+      RodXml("l2", "l1", "0.2 0 0.3") + RodXml("r1", "waist", "0.2 -0.2 0.3") +
+      RodXml("r2", "r1", "0.2 0 0.3") + RodXml("neck", "waist", "0 0 0.5") +
+      RodXml("ear_l", "neck", "0 0.1 0.1") + RodXml("ear_r", "neck", "0 -0.1 0.1") + "</robot>";
+  ProjectDraft draft = DraftProject(urdf, "r.urdf", {});
+  std::vector<std::string> trunks;
+  for (const DraftedChain& chain : draft.chains) {
+    if (chain.trunk) trunks.push_back(chain.name);
+  }
+  EXPECT_EQ(trunks, (std::vector<std::string>{"torso", "torso_2"}));
+  const ScratchFolder folder;
+  const Project project = ReadBack(draft, folder);
+  EXPECT_EQ(project.chains.size(), draft.chains.size());
+  const std::filesystem::path written = folder.Write("r.urdf", draft.urdf);
+  EXPECT_NO_THROW(RequireReadable(draft, "project.yaml", written));
+  draft.chains.push_back(draft.chains.front());
+  ExpectInputError([&] { RequireReadable(draft, "project.yaml", written); },
+                   {"no project that can be read", "nothing is written", "project.yaml:"});
 }
 
 TEST(DraftStudy, PartsThatAreCheckedAreApartAtRestAndTheSolesLieFlat) {

@@ -114,7 +114,27 @@ Refused StandRefused(const ProjectDraft& draft, double torque_share) {
   return {};
 }
 
+/// Masses that the robot description lacks and standing needs; empty if it has them.
+std::string MissingMasses(const ProjectDraft& draft) {
+  const RobotTree& tree = draft.tree;
+  if (!HasMasses(tree)) return "the robot description has no masses";
+  for (const Limb& limb : draft.limbs.limbs) {
+    if (!limb.leg) continue;
+    const bool weighs = std::any_of(tree.links.begin(), tree.links.end(), [&](const Link& link) {
+      return link.mass > 0.0 &&
+             std::find(limb.joints.begin(), limb.joints.end(), link.body - 1) != limb.joints.end();
+    });
+    if (!weighs) return "the links of limb " + Quote(limb.name) + " have no masses";
+  }
+  return "";
+}
+
 }  // namespace
+
+bool HasMasses(const RobotTree& tree) {
+  return std::any_of(tree.links.begin(), tree.links.end(),
+                     [](const Link& link) { return link.mass > 0.0; });
+}
 
 void RestOnFeet(ProjectDraft& draft, const Semantics& semantics) {
   // Shares by which the root link is lowered if the usual posture fails. A leg that is nearly
@@ -147,7 +167,8 @@ void RestOnFeet(ProjectDraft& draft, const Semantics& semantics) {
     }
   }
   draft.rest = ChooseRest(draft.tree, draft.limbs, draft.soles, semantics, kUsualDrop);
-  draft.held_because = usual.why;
+  const std::string missing = MissingMasses(draft);
+  draft.held_because = missing.empty() ? usual.why : missing + ", without which nothing stands";
 }
 
 void NarrowWaist(ProjectDraft& draft) {

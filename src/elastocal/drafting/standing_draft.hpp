@@ -16,6 +16,9 @@ namespace elastocal {
 /// are bent less.
 void RestOnFeet(ProjectDraft& draft, const Semantics& semantics);
 
+/// Whether any link of the robot has a mass.
+bool HasMasses(const RobotTree& tree);
+
 /// Sets the range of joints that carry all legs, within which all feet can keep their places on the
 /// floor while the legs' own joints compensate.
 void NarrowWaist(ProjectDraft& draft);

@@ -18,6 +18,18 @@
 namespace elastocal {
 namespace {
 
+TEST(StandingDraftStudy, MissingMassesAreNamed) {
+  const std::string urdf = ReadFile(SourceFile("tests/robots/quadruped.urdf"));
+  const std::regex mass(R"(<mass value="[^"]*")");
+  const ProjectDraft none =
+      DraftProject(std::regex_replace(urdf, mass, R"(<mass value="0")"), "q.urdf", {});
+  EXPECT_FALSE(none.stands);
+  EXPECT_EQ(none.held_because.find("the robot description has no masses"), 0u) << none.held_because;
+  EXPECT_TRUE(std::ranges::any_of(none.warnings, [](const std::string& warning) {
+    return warning.find("no masses") != std::string::npos;
+  }));
+}
+
 TEST(StandingDraftStudy, AQuadrupedStandsOnBalls) {
   const ProjectDraft draft = DraftFile("tests/robots/quadruped.urdf");
   EXPECT_TRUE(draft.stands);

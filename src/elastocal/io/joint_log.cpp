@@ -189,15 +189,23 @@ JointLog ReadColumns(Table& table, const Project& project, const std::string& ti
   for (int sensor : columns.sensors) {
     log.wrench_sensors.push_back(project.force_torque_sensors[sensor]);
   }
+  std::vector<const Joint*> joints;
   for (std::size_t i = 0; i < columns.joints.size(); ++i) {
     const Joint& joint = project.tree.joints[columns.joints[i]];
     const auto column = static_cast<Eigen::Index>(i);
     log.names.push_back(joint.name);
-    CheckUnits(joint, log.positions.col(column),
-               [&](Eigen::Index row) { return RowPlace(source, first_line, row); });
+    joints.push_back(&joint);
     if (columns.torques[i] < 0) continue;
-    CheckTorques(log.torques.col(column), table.header()[columns.torques[i]], source, first_line);
+    auto torques = log.torques.col(column);
+    if (std::ranges::find(project.torque_sensors, columns.joints[i]) !=
+        project.torque_sensors.end()) {
+      CheckTorques(torques, table.header()[columns.torques[i]], source, first_line);
+    } else if (torques.array().isNaN().any()) {
+      torques.setConstant(kNaN);  // nobody uses it, as in logs of other formats (TakeTorques)
+    }
   }
+  CheckUnits(joints, log.positions,
+             [&](Eigen::Index row) { return RowPlace(source, first_line, row); });
   return log;
 }
 

@@ -74,7 +74,6 @@ TEST(JointLog, EmptyRowsAboveTheFirstSampleArePassedOver) {
   EXPECT_EQ(log.positions.row(0), Eigen::RowVector2d(0.1, 0.2));
   ExpectLogError(begin + "1,0.1,5,0.2\n2,,,\n", {"j.csv:6: ", "'elbow_joint'", "found nothing"});
   ExpectLogError(begin + "1,0.1,5,\n", {"j.csv:5: ", "'turret_joint'"});
-  ExpectLogError(begin + "1,0.1,5,0\n2,0.1,,0\n", {"j.csv:6: ", "found no torque"});
   ExpectLogError(begin, {"no row below the header has a position"});
 }
 
@@ -118,12 +117,33 @@ TEST(JointLog, UsesTheNamesOfTheProject) {
                    {"p.yaml", "'elbow_joint' stands for two things"});
 }
 
+// `info` tells logs from Qualisys TSVs, which begin with the column Time as well.
+TEST(JointLog, InfoKnowsTabsAndByteOrderMarks) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "anything";
+  const auto format = [&](const std::string& text) {
+    WriteFile(file, text);
+    const std::string name = ReadAnyRecording(file, {}).format;
+    std::filesystem::remove(file);
+    return name;
+  };
+  EXPECT_EQ(format("time\telbow_joint\n0\t0.1\n0.1\t0.2\n"), "joint log (CSV)");
+  // A table whose time has another name is no Qualisys TSV.
+  EXPECT_EQ(format("Time\telbow_joint\n0\t0.1\n0.1\t0.2\n"), "table (CSV)");
+  const std::string rows = "0\t1\t2\t3\n0.1\t4\t5\t6\n";
+  EXPECT_EQ(format("Time\tA X\tA Y\tA Z\n" + rows), "Qualisys TSV");
+  EXPECT_EQ(format("\xEF\xBB\xBFMARKER_NAMES\tA\nTime\tA X\tA Y\tA Z\n" + rows), "Qualisys TSV");
+}
+
 TEST(JointLog, ATorqueColumnWithoutNumbersIsNoSensor) {
   const std::string header = "t,elbow_joint,elbow_joint_torque,rail_joint,rail_joint_torque\n";
   const JointLog log = ReadLog(header + "1,0,nan,0,\n2,0,NaN,0,\n");
   EXPECT_TRUE(log.torques.array().isNaN().all());
-  ExpectLogError(header + "1,0,5,0,\n2,0,5,0,\n3,0,nan,0,\n4,0,,0,\n",
-                 {"j.csv:4: column 'elbow_joint_torque'", "found no torque", "in any row"});
+  const std::string gap = header + "1,0,5,0,\n2,0,5,0,\n3,0,nan,0,\n4,0,,0,\n";
+  const Project sensor = LogProject("{}", "torque_sensors: [elbow_joint]");
+  ExpectInputError([&] { ReadLog(gap, sensor); },
+                   {"j.csv:4: column 'elbow_joint_torque'", "found no torque", "in any row"});
+  // Nobody uses the effort of a joint that is not in torque_sensors.
+  EXPECT_TRUE(ReadLog(gap).torques.array().isNaN().all());
 }
 
 TEST(JointLog, NamesWrongColumns) {

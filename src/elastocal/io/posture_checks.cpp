@@ -241,6 +241,25 @@ std::string LimitWarning(const Recording& recording, const Joint& joint, int coo
          (count > 1 ? " (the worst of " + std::to_string(count) + " postures beyond it)" : "");
 }
 
+bool TurnsWithoutEnd(const Joint& joint) {
+  return joint.type == JointType::kRevolute && std::isinf(joint.limits.lower) &&
+         std::isinf(joint.limits.upper);
+}
+
+/// Whether joints with limits tell that angles are in radians: some are not at zero, and none is
+/// beyond its limits. In degrees they would be.
+bool LimitsTellRadians(const std::vector<const Joint*>& joints, const Eigen::MatrixXd& positions) {
+  bool told = false;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    if (joints[k]->type != JointType::kRevolute || TurnsWithoutEnd(*joints[k])) continue;
+    for (const double q : positions.col(static_cast<Eigen::Index>(k))) {
+      if (BeyondLimits(*joints[k], q)) return false;
+      told = told || q != 0.0;
+    }
+  }
+  return told;
+}
+
 }  // namespace
 
 void CheckUnits(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& positions,
@@ -264,6 +283,15 @@ void CheckUnits(const Joint& joint, const Eigen::Ref<const Eigen::VectorXd>& pos
                    ": this looks like degrees; radians were expected");
 }
 
+void CheckUnits(const std::vector<const Joint*>& joints, const Eigen::MatrixXd& positions,
+                const std::function<std::string(Eigen::Index)>& place) {
+  const bool radians = LimitsTellRadians(joints, positions);
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    if (radians && TurnsWithoutEnd(*joints[k])) continue;
+    CheckUnits(*joints[k], positions.col(static_cast<Eigen::Index>(k)), place);
+  }
+}
+
 bool BeyondLimits(const Joint& joint, double position) {
   const double margin = joint.type == JointType::kRevolute ? kLimitMarginRad : kLimitMarginM;
   return std::max(joint.limits.lower - position, position - joint.limits.upper) > margin;
@@ -275,10 +303,9 @@ void CheckPlausible(const Recording& recording, const RobotTree& tree) {
     if (!HasPoseByPosture(recording)) CheckRanges(recording, size);
     CheckDistances(recording, size);
   }
-  for (int c = 0; c < tree.coordinate_count(); ++c) {
-    CheckUnits(tree.joints[tree.coordinate_joint[c]], recording.q.col(c),
-               [&](Eigen::Index i) { return PlaceOf(recording, i); });
-  }
+  std::vector<const Joint*> joints;
+  for (const int joint : tree.coordinate_joint) joints.push_back(&tree.joints[joint]);
+  CheckUnits(joints, recording.q, [&](Eigen::Index i) { return PlaceOf(recording, i); });
   CheckSeconds(recording, tree);
   CheckIdentical(recording);
   CheckPosturesDiffer(recording);

@@ -175,6 +175,22 @@ TEST(PostureChecks, ASlidingJointIsInMetres) {
   EXPECT_NO_THROW(check(343.4));
 }
 
+// A wheel or a wrist without limits turns many times. Joints with limits tell radians from degrees.
+TEST(PostureChecks, JointsWithoutLimitsMayTurnManyTimes) {
+  const RobotTree arm = Arm();
+  const std::vector<const Joint*> joints = {&arm.joints[0], &arm.joints[1]};
+  const auto check = [&](double turn, double spin) {
+    CheckUnits(joints, (Eigen::MatrixXd(2, 2) << 0, 0, turn, spin).finished(),
+               [](Eigen::Index i) { return "t.csv:" + std::to_string(i + 2) + ": "; });
+  };
+  EXPECT_NO_THROW(check(0.9, 132.5));
+  ExpectInputError([&] { check(40.0, 132.5); }, {"t.csv:3: joint 'turn' is at 40", "degrees"});
+  // Within two turns, but beyond its limits of 1 rad: all joints are in degrees.
+  ExpectInputError([&] { check(10.0, 132.5); }, {"joint 'spin' is at 132.5", "degrees"});
+  // Nothing tells.
+  ExpectInputError([&] { check(0.0, 132.5); }, {"joint 'spin' is at 132.5", "degrees"});
+}
+
 TEST(PostureChecks, TimesInHoursAreRefused) {
   Recording recording = TwoPostures();
   recording.line = {2, 3};

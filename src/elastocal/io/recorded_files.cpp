@@ -16,6 +16,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/readers/joint_columns.hpp"
 #include "elastocal/readers/lengths.hpp"
+#include "elastocal/readers/qtm_header.hpp"
 #include "elastocal/readers/qtm_tsv.hpp"
 #include "elastocal/readers/times.hpp"
 #include "elastocal/tables/table_reader.hpp"
@@ -44,6 +45,15 @@ int FindLabel(const MarkerTrajectories& trajectories, const std::string& label) 
   return found;
 }
 
+/// Throws InputError if another trajectory has the same name: readers call it NAME#2
+/// (DistinctNames).
+void RequireOne(const MarkerTrajectories& trajectories, const std::string& name) {
+  if (std::ranges::find(trajectories.names, name + "#2") == trajectories.names.end()) return;
+  throw InputError(trajectories.source + ": two trajectories have the label " + Quote(name) +
+                   ", and nothing tells which of them is the marker; give one of them another "
+                   "label");
+}
+
 void NameAsProject(const Project& project, MarkerTrajectories& trajectories) {
   std::vector<std::string> names = trajectories.names;
   for (const Marker& marker : project.markers) {
@@ -51,6 +61,7 @@ void NameAsProject(const Project& project, MarkerTrajectories& trajectories) {
     const bool given = label != project.recording.labels.end();
     const int found = FindLabel(trajectories, given ? label->second : marker.name);
     if (found < 0) continue;
+    RequireOne(trajectories, trajectories.names[static_cast<std::size_t>(found)]);
     // What has this name by itself is another marker then.
     const auto same = std::find(names.begin(), names.end(), marker.name);
     if (same != names.end() && same - names.begin() != found) *same += " (as recorded)";
@@ -196,29 +207,10 @@ JointLog ReadJointFile(const fs::path& file, const ReaderOptions& options, const
 
 namespace {
 
-/// Whether the first line is of a Qualisys TSV: `KEY<tab>`, or names of columns.
-bool BeginsLikeQtm(const ByteSource& source) {
-  std::array<char, 4096> head{};
-  std::string_view text(head.data(), source.Read(0, head));
-  text = text.substr(0, text.find_first_of("\r\n"));
-  const std::size_t tab = text.find('\t');
-  if (tab == std::string_view::npos) return false;
-  const std::string_view first = text.substr(0, tab);
-  return first == "Frame" || first == "Time" || first.ends_with(" X") ||
-         first.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == std::string_view::npos;
-}
-
-/// Whether the first line is surely of a Qualisys TSV where tables are expected, whose first column
-/// may be called Time or t.
-bool IsSurelyQtm(const ByteSource& source) {
-  std::array<char, 4096> head{};
-  std::string_view text(head.data(), source.Read(0, head));
-  text = text.substr(0, text.find_first_of("\r\n"));
-  const std::string_view first = text.substr(0, text.find('\t'));
-  constexpr std::array<std::string_view, 8> kKeys = {
-      "NO_OF_FRAMES",  "NO_OF_CAMERAS", "NO_OF_MARKERS", "FREQUENCY",
-      "DATA_INCLUDED", "MARKER_NAMES",  "TIME_STAMP",    "Frame"};
-  return first.size() < text.size() && std::ranges::find(kKeys, first) != kKeys.end();
+std::string HeadOf(const ByteSource& source) {
+  std::string head(4096, '\0');
+  head.resize(source.Read(0, head));
+  return head;
 }
 
 /// Throws InputError where two columns have the same quantity, as two topics of one joint have.
@@ -282,10 +274,10 @@ RecordingFile ReadAnyRecording(const fs::path& file, const ReaderOptions& option
   const ByteSource source = ByteSource::Open(file);
   if (RecogniseRecording(source)) return ReadRecordingFile(source, options);
   RecordingFile read;
-  if (BeginsLikeQtm(source)) {
+  if (BeginsLikeQtmTsv(HeadOf(source))) {
     read.format = "Qualisys TSV";
     UnitOf("mm", options.unit, source.name());  // refuses another one
-    read.markers = ReadQtmTsv(file);
+    read.markers = ReadQtmTsv(file, &read.notes);
     read.up = "z";
     read.why_no_joints = "a Qualisys TSV has no joint positions";
   } else if ((read.postures = ReadNamedPostures(source))) {
@@ -313,7 +305,7 @@ void RefuseRecording(const fs::path& file) {
   if (!fs::is_regular_file(file, error)) return;
   const ByteSource source = ByteSource::Open(file);
   std::optional<std::string> format = RecogniseRecording(source);
-  if (!format && IsSurelyQtm(source)) format = "Qualisys TSV";
+  if (!format && IsSurelyQtmTsv(HeadOf(source))) format = "Qualisys TSV";
   if (!format) return;
   throw InputError(file.string() + ": this is a recording over time (" + *format +
                    "); it needs a folder with experiment.yaml, which names it and the joint log "
@@ -340,13 +332,12 @@ JointLog TakeColumns(const JointLog& from, const Project& project) {
   log.source = from.source;
   log.time_s = from.time_s;
   TakeWrenches(from, project, columns, log);
+  std::vector<const Joint*> logged;
   for (const auto& [name, column] : columns) {
     const auto joint = joint_of.find(name);
     if (joint == joint_of.end()) FailUnknown(from, name, known, project);
     if (joints[joint->second].mimic) continue;
-    CheckUnits(joints[joint->second], from.positions.col(column), [&](Eigen::Index sample) {
-      return from.source + ": sample " + std::to_string(sample + 1) + ": ";
-    });
+    logged.push_back(&joints[joint->second]);
     const Eigen::Index to = log.positions.cols();
     log.names.push_back(joints[joint->second].name);
     log.positions.conservativeResize(from.sample_count(), to + 1);
@@ -357,6 +348,9 @@ JointLog TakeColumns(const JointLog& from, const Project& project) {
   }
   if (log.names.empty()) throw InputError(log.source + ": it has no joint of the robot");
   if (log.sample_count() == 0) throw InputError(log.source + ": it has no sample");
+  CheckUnits(logged, log.positions, [&](Eigen::Index sample) {
+    return from.source + ": sample " + std::to_string(sample + 1) + ": ";
+  });
   return log;
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "elastocal/io/label_help.hpp"
 #include "elastocal/io/motor_columns.hpp"
 #include "elastocal/io/recorded_files.hpp"
 #include "elastocal/math/input_error.hpp"
@@ -81,18 +82,21 @@ TrialSamples Sample(const TrialFiles& files, const MarkedRobot& robot, const Pro
   samples.summary.reference_missing = !references.empty() && !scale;
   std::erase_if(samples.summary.markers_unknown,
                 [&](const std::string& label) { return IsReferenceMarker(references, label); });
+  samples.summary.refused += DescribeLabels(samples.summary, project);
   return samples;
 }
 
-/// Finds which axis points up: by the user, or by all files.
+/// Finds which axis points up: by the user, or by all files. The user may say it for some of the
+/// folders; their cameras have one frame.
 class UpAxis {
  public:
   explicit UpAxis(const Experiment& experiment)
       : gravity_(experiment.gravity), given_(experiment.up_given) {}
 
-  void Take(const MarkerFile& file) {
+  /// `own`: whether the experiment.yaml of this file says it.
+  void Take(const MarkerFile& file, bool own) {
     const std::string& source = file.trajectories.source;
-    const std::string up = file.up.empty() && file.up_is_z && !given_ ? "z" : file.up;
+    const std::string up = file.up.empty() && file.up_is_z && !own ? "z" : file.up;
     if (up.empty() && given_) return;
     if (up.empty()) {
       throw InputError(source +
@@ -116,11 +120,43 @@ class UpAxis {
   std::string first_;  ///< the file that said it first
 };
 
+/// The joints whose torques a log has although the project lists no torque sensors. A driver
+/// without torques writes the same number always. Simulated logs are left out: their project says
+/// what it wants of them.
+void AddUnlistedTorques(const JointLog& log, const TrialFiles& trial, const Project& project,
+                        std::set<std::string>& unlisted) {
+  const auto& torsion = project.elasticity.torsion;
+  const bool rigid = torsion && torsion->empty();
+  std::error_code error;
+  if (!project.torque_sensors.empty() || rigid ||
+      fs::exists(trial.markers.parent_path() / "truth.yaml", error)) {
+    return;
+  }
+  for (Eigen::Index c = 0; c < log.torques.cols(); ++c) {
+    const auto torques = log.torques.col(c);
+    if (!torques.allFinite() || torques.maxCoeff() == torques.minCoeff()) continue;
+    unlisted.insert(log.names[static_cast<std::size_t>(c)]);
+  }
+}
+
+std::string DescribeUnlisted(const std::set<std::string>& joints, const Project& project) {
+  return "torques of " + FirstOf({joints.begin(), joints.end()}) +
+         " are logged, and not used: " + project.file.string() +
+         " lists no torque_sensors, so that statics gives the loads. List the joints there whose "
+         "torques are measured";
+}
+
+/// What the logs of all trials have.
+struct LoggedJoints {
+  std::vector<std::set<std::string>> of_trial;
+  std::set<std::string> unlisted_torques;  ///< AddUnlistedTorques
+};
+
 /// Samples all trials; while one is sampled, the markers of the next are read on another thread.
 /// `logged` gets the joints that the log of each has.
 std::vector<TrialSamples> SampleAll(const std::vector<TrialFiles>& trials, const MarkedRobot& robot,
                                     const Project& project, UpAxis& up,
-                                    std::vector<std::set<std::string>>& logged) {
+                                    const std::vector<bool>& up_given, LoggedJoints& logged) {
   std::vector<TrialSamples> samples;
   const InterruptionOfCaller interruption;
   const auto start_reading = [&](std::size_t i) {
@@ -132,10 +168,11 @@ std::vector<TrialSamples> SampleAll(const std::vector<TrialFiles>& trials, const
   std::future<MarkerFile> markers = start_reading(0);
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const JointLog log = ReadJointFile(trials[i].joints, trials[i].reading, project);
-    logged.emplace_back(log.names.begin(), log.names.end());
+    logged.of_trial.emplace_back(log.names.begin(), log.names.end());
+    AddUnlistedTorques(log, trials[i], project, logged.unlisted_torques);
     while (markers.wait_for(kBetweenLooks) != std::future_status::ready) InterruptionPoint();
     MarkerFile file = markers.get();
-    up.Take(file);
+    up.Take(file, up_given[static_cast<std::size_t>(trials[i].session)]);
     if (i + 1 < trials.size()) markers = start_reading(i + 1);
     samples.push_back(Sample(trials[i], robot, project, std::move(file), log));
   }
@@ -163,16 +200,23 @@ std::string NameOf(const fs::path& folder) {
 }
 
 /// The trials of all folders, under names of their own.
-Experiment ReadExperiments(const std::vector<fs::path>& folders, const Project& project) {
+/// `up_given` says which of the folders state the axis that points up.
+Experiment ReadExperiments(const std::vector<fs::path>& folders, const Project& project,
+                           std::vector<bool>& up_given) {
   Experiment all;
+  fs::path first_given;
   for (std::size_t i = 0; i < folders.size(); ++i) {
     Experiment one = ReadExperiment(folders[i], project);
-    if (i > 0 && one.gravity != all.gravity) {
-      throw InputError(folders[i].string() + ": the cameras have another axis up than in " +
-                       folders[0].string());
+    up_given.push_back(one.up_given);
+    if (one.up_given) {
+      if (all.up_given && one.gravity != all.gravity) {
+        throw InputError(folders[i].string() + ": the cameras have another axis up than in " +
+                         first_given.string());
+      }
+      if (!all.up_given) first_given = folders[i];
+      all.gravity = one.gravity;
+      all.up_given = true;
     }
-    all.gravity = one.gravity;
-    all.up_given = all.up_given || one.up_given;
     for (TrialFiles& trial : one.trials) {
       if (folders.size() > 1) trial.name = NameOf(folders[i]) + "/" + trial.name;
       trial.session = static_cast<int>(i);
@@ -224,13 +268,15 @@ bool IsRecordingFolder(const fs::path& path) {
 
 RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const Project& project) {
   if (folders.empty()) throw InputError("no recording folder; one or more were expected");
-  const Experiment experiment = ReadExperiments(folders, project);
+  std::vector<bool> up_given;
+  const Experiment experiment = ReadExperiments(folders, project, up_given);
   const MarkedRobot robot = MakeMarkedRobot(project);
   std::vector<TrialSamples> calibration, validation;
   RecordingFolder result;
   UpAxis up(experiment);
-  std::vector<std::set<std::string>> logged;
-  std::vector<TrialSamples> sampled = SampleAll(experiment.trials, robot, project, up, logged);
+  LoggedJoints logged;
+  std::vector<TrialSamples> sampled =
+      SampleAll(experiment.trials, robot, project, up, up_given, logged);
   SampleOddOnesAgain(experiment.trials, robot, project, sampled);
   RefuseExchangedLogs(
       [&](std::size_t markers_of, std::size_t log_of) {
@@ -254,13 +300,17 @@ RecordingFolder ReadRecordingFolders(const std::vector<fs::path>& folders, const
   result.validation = MergeTrials(robot, validation, source);
   result.calibration.gravity = result.validation.gravity = up.gravity();
   for (const auto& [name, position] : project.recording.not_recorded) {
-    const std::vector<std::string> without = TrialsWithout(name, experiment.trials, logged);
+    const std::vector<std::string> without =
+        TrialsWithout(name, experiment.trials, logged.of_trial);
     if (without.size() == experiment.trials.size()) {
       result.calibration.joints_not_recorded.push_back(name);
       result.validation.joints_not_recorded.push_back(name);
     } else if (!without.empty()) {
       result.findings.push_back(DescribeMissing(name, position, without, project));
     }
+  }
+  if (!logged.unlisted_torques.empty()) {
+    result.findings.push_back(DescribeUnlisted(logged.unlisted_torques, project));
   }
   if (result.calibration.posture_count() + result.validation.posture_count() == 0) {
     throw InputError(source + ": no trial can be used; " + result.findings.front());

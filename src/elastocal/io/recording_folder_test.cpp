@@ -2,6 +2,7 @@
 #include "elastocal/io/recording_folder.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include "elastocal/io/joint_log.hpp"
 #include "elastocal/readers/qtm_tsv.hpp"
 #include "tests/expect_input_error.hpp"
+#include "tests/recording_writers.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/test_files.hpp"
 #include "tests/trial_player.hpp"
@@ -127,7 +129,7 @@ TEST_F(RecordingFolderStudy, GoesOnWithoutATrialThatItRefuses) {
   const RecordingFolder folder = Read();
   EXPECT_EQ(folder.calibration.posture_count(), 12);
   EXPECT_EQ(folder.validation.posture_count(), 0);
-  ASSERT_EQ(folder.findings.size(), 1u);
+  ASSERT_EQ(folder.findings.size(), 2u);  // the other one is of torques
   EXPECT_NE(folder.findings[0].find("trial check: not used: "), std::string::npos);
 
   ExpectInputError(
@@ -163,7 +165,86 @@ TEST_F(RecordingFolderTest, MergesFolders) {
       [&] {
         ReadRecordingFolders({folder_.path(), other}, project_);
       },
+      {folder_.path().string(), "a.tsv", "the axis z points up"});
+  WriteFile(folder_.path() / "experiment.yaml", std::string("up: x\n") + kTwoTrials);
+  ExpectInputError(
+      [&] {
+        ReadRecordingFolders({folder_.path(), other}, project_);
+      },
       {other.string(), "another axis up"});
+}
+
+// The files of one folder say which axis points up, and experiment.yaml of the other one says it.
+TEST_F(RecordingFolderTest, FoldersMayStateTheAxisInTheirOwnWays) {
+  ScriptedTrial played = Write("a", {.postures = 12});
+  Write("b", {.postures = 8, .seed = 5});
+  const std::string z = "up: z\n" + std::string(kTwoTrials);
+  folder_.Write("experiment.yaml", kTwoTrials);
+  const std::filesystem::path other = folder_.path() / "second";
+  std::filesystem::create_directory(other);
+  for (const char* name : {"a", "b"}) {
+    const std::string file = name;
+    const MarkerTrajectories markers = ReadQtmTsv(folder_.path() / (file + ".tsv"));
+    WriteFile(other / (file + ".trc"), TrcText(markers));  // it states no axis
+    std::filesystem::copy_file(folder_.path() / (file + ".csv"), other / (file + ".csv"));
+  }
+  std::string experiment = z;
+  for (std::size_t at = 0; (at = experiment.find(".tsv", at)) != std::string::npos;) {
+    experiment.replace(at, 4, ".trc");
+  }
+  WriteFile(other / "experiment.yaml", experiment);
+  const RecordingFolder folder = ReadRecordingFolders({folder_.path(), other}, project_);
+  EXPECT_EQ(folder.calibration.posture_count(), 24);
+  EXPECT_EQ(folder.calibration.gravity, Eigen::Vector3d(0, 0, -9.81));
+}
+
+// The usual first mistake: the cameras' labels are not the names of the project.
+TEST_F(RecordingFolderTest, SaysWhichLabelsWereExpected) {
+  ScriptedTrial played = Write("a", {.postures = 4});
+  Write("b", {.postures = 4});
+  std::string first;
+  for (const char* name : {"a", "b"}) {
+    const std::filesystem::path file = folder_.path() / (std::string(name) + ".tsv");
+    MarkerTrajectories markers = ReadQtmTsv(file);
+    for (std::string& label : markers.names) {
+      for (char& c : label) c = std::islower(c) != 0 ? std::toupper(c) : std::tolower(c);
+    }
+    first = *std::ranges::min_element(markers.names);
+    WriteQtmTsv(file, markers);
+  }
+  ExpectInputError([&] { Read(); },
+                   {"none of its markers is in the marker file, whose labels are '", first,
+                    "expected were '", "(is it '", "recording.labels"});
+}
+
+TEST_F(RecordingFolderTest, RefusesALabelThatOccursTwice) {
+  ScriptedTrial played = Write("a", {.postures = 4});
+  Write("b", {.postures = 4});
+  const std::string label = project_.markers.front().name;
+  played.markers.names.back() = label + "#2";  // as readers call it
+  WriteQtmTsv(folder_.path() / "a.tsv", played.markers);
+  ExpectInputError([&] { Read(); }, {"a.tsv", "two trajectories have the label", label});
+}
+
+TEST_F(RecordingFolderTest, NamesTorquesThatNoSensorIsListedFor) {
+  Write("a", {.postures = 12});
+  Write("b", {.postures = 8});
+  const auto notes = [&] {
+    const std::vector<std::string> findings = Read().findings;
+    return std::ranges::count_if(findings, [](const std::string& finding) {
+      return finding.starts_with("torques of ") &&
+             finding.find("no torque_sensors") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(notes(), 1);
+  project_.elasticity.torsion = std::vector<std::string>();
+  EXPECT_EQ(notes(), 0) << "a rigid robot needs no loads";
+  project_.elasticity.torsion.reset();
+  project_.torque_sensors = {FindJoint(project_.tree, "left_knee_pitch")};
+  EXPECT_EQ(notes(), 0);
+  project_.torque_sensors.clear();
+  folder_.Write("truth.yaml", "trials: {}\n");
+  EXPECT_EQ(notes(), 0) << "a simulation";
 }
 
 TEST_F(RecordingFolderStudy, KnowsWhichAxisIsUpAndWhatLagToExpect) {

@@ -18,14 +18,20 @@ namespace fs = std::filesystem;
 
 using Json = nlohmann::ordered_json;
 
-/// Whether a file begins with a header that FormatMotionTable writes.
+/// Whether a text begins with a header that FormatMotionTable writes for `plan`.
+bool HasPlannedHeader(const std::string& text) {
+  const std::string header = text.substr(0, text.find('\n'));
+  return header.starts_with("time,") && header.find(",support,zmp_x,zmp_y") != std::string::npos;
+}
+
+/// Whether a file begins with such a header.
 bool IsPlannedMotion(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return false;
   std::ifstream stream(file);
   std::string header;
   std::getline(stream, header);
-  return header.starts_with("time,") && header.find(",support,zmp_x,zmp_y") != std::string::npos;
+  return HasPlannedHeader(header);
 }
 
 /// Of each chain the part in which its feet stand, as a motion of its own.
@@ -85,11 +91,14 @@ void MotionFiles::AddChains(const fs::path& folder, const std::vector<std::strin
   }
 }
 
-void MotionFiles::Declare(OutputSet& outputs) const {
-  outputs.Declare(motion, "time,");
+void MotionFiles::Declare(const RobotTree& tree, OutputSet& outputs) const {
+  const auto is_own = [&](const std::string& text) {
+    return HasPlannedHeader(text) || IsMotionTable(tree, text);
+  };
+  outputs.Declare(motion, is_own);
   outputs.Declare(margins, "{");
   outputs.Declare(trajectory, "header:");
-  for (const fs::path& file : chains) outputs.Declare(file, "time,");
+  for (const fs::path& file : chains) outputs.Declare(file, is_own);
 }
 
 void SetMotionFiles(const MotionFiles& files, const Project& project, const MotionPlan& plan,

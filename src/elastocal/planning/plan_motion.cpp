@@ -233,6 +233,7 @@ MotionPlan PlanMotion(const Project& project, const std::vector<ChainPostures>& 
 MotionPlan PlanValidationMotion(const Project& project, ValidationKind kind, std::uint64_t seed,
                                 const MotionPlanOptions& options, const Progress& progress) {
   CheckPlanOptions(options);
+  ChosenSetups(project, {});  // throws where there is no section `design`
   const auto robot = StandForMotion(project, options);
   Random random(seed);
   std::vector<PostureTour> tours = ValidationTours(

@@ -136,8 +136,9 @@ struct MotionFiles {
   /// planned motion, and so is not replaced.
   void AddChains(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
-  /// Declares the files in the set, with the beginnings by which such files are recognised.
-  void Declare(OutputSet& outputs) const;
+  /// Declares the files in the set, with what such files are recognised by: a motion by the header
+  /// that `plan` writes, or as a table of the robot that `compensate` wrote (IsMotionTable).
+  void Declare(const RobotTree& tree, OutputSet& outputs) const;
 };
 
 /// Sets the contents of these files, which must be declared.

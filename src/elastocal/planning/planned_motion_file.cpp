@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "elastocal/files/yaml_word.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/table_writer.hpp"
 #include "elastocal/tables/text.hpp"
@@ -144,7 +145,7 @@ std::string FormatJointTrajectory(const RobotTree& tree, const std::vector<int>&
   fmt::format_to(put, "header:\n  stamp: {}\n  frame_id: ''\njoint_names:\n", stamp(0));
   const std::vector<std::string> names = JointNames(tree);
   for (const int c : coordinates) {
-    fmt::format_to(put, "  - {}\n", names[static_cast<std::size_t>(c)]);
+    fmt::format_to(put, "  - {}\n", YamlWord(names[static_cast<std::size_t>(c)]));
   }
   fmt::format_to(put, "points:\n");
   const Eigen::Index last = motion.q.rows() - 1;

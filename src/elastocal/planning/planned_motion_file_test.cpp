@@ -85,6 +85,24 @@ TEST(JointTrajectory, HasTheJointsOfChainsAndThoseThatMove) {
             std::string::npos);
 }
 
+TEST(JointTrajectory, NamesAreText) {
+  RobotTree tree = ReadProject(SourceFile("models/talos/project.yaml")).tree;
+  JointMotion motion;
+  motion.time_s = Eigen::Vector2d(0.0, 1.0);
+  motion.q.setZero(2, tree.coordinate_count());
+  const auto expect = [&](const std::string& name, const std::string& written) {
+    tree.joints[static_cast<std::size_t>(tree.coordinate_joint[0])].name = name;
+    EXPECT_NE(FormatJointTrajectory(tree, {0}, motion, 1, RosVersion::kRos2)
+                  .find("joint_names:\n  - " + written + "\n"),
+              std::string::npos)
+        << name;
+  };
+  expect("yes", "\"yes\"");
+  expect("1", "\"1\"");
+  expect("L Ankle: Pitch", "\"L Ankle: Pitch\"");
+  expect("torso_1_joint", "torso_1_joint");
+}
+
 TEST(ProjectFile, ReadsSoles) {
   const Project talos = ReadProject(SourceFile("models/talos/project.yaml"));
   ASSERT_EQ(talos.soles.size(), 2u);

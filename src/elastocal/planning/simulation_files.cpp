@@ -22,16 +22,20 @@ bool IsThere(const fs::path& file) {
   return fs::exists(fs::symlink_status(file, error));
 }
 
-/// Files of the trials in an experiment.yaml that are in its own folder.
-std::vector<fs::path> TrialFilesIn(const fs::path& experiment) {
+/// Files of the trials that truth.yaml lists, as they were simulated: somebody may have added
+/// trials of a real robot to experiment.yaml.
+std::vector<fs::path> SimulatedTrialFiles(const SimulationFiles& of) {
   std::vector<fs::path> files;
-  const YamlValue root = YamlValue::Parse(ReadFile(experiment), experiment.string());
-  for (const YamlValue& trial : root.Get("trials").Items()) {
-    for (const char* key : {"markers", "joints", "truth"}) {
-      const auto value = trial.Find(key);
-      if (!value) continue;
-      const fs::path name = value->Text();
-      if (name == name.filename()) files.push_back(experiment.parent_path() / name);
+  const YamlValue root = YamlValue::Parse(ReadFile(of.truth), of.truth.string());
+  const auto trials = root.Find("trials");
+  if (!trials) return files;
+  for (const auto& [name, truth] : trials->Entries()) {
+    if (fs::path(name) != fs::path(name).filename()) continue;
+    PlannedTrial simulated;
+    simulated.name = name;
+    const TrialFiles trial = FilesOfTrial(simulated, of.folder);
+    for (const fs::path& file : {trial.markers, trial.joints, trial.truth}) {
+      if (IsThere(file)) files.push_back(file);
     }
   }
   return files;
@@ -45,7 +49,7 @@ std::vector<fs::path> EarlierSimulation(const SimulationFiles& files, bool force
   if (!IsThere(files.experiment)) return earlier;
   earlier.push_back(files.experiment);
   try {
-    const std::vector<fs::path> trials = TrialFilesIn(files.experiment);
+    const std::vector<fs::path> trials = SimulatedTrialFiles(files);
     earlier.insert(earlier.end(), trials.begin(), trials.end());
   } catch (const InputError&) {
     if (!force) throw;  // it is unknown which files belong to the earlier simulation
@@ -100,7 +104,7 @@ SimulationFiles FilesOfSimulation(const Simulation& simulation, const fs::path& 
     if (force || !IsThere(file) || Contains(earlier, file)) continue;
     throw InputError(file.string() + ": is there and was not simulated (" +
                      (earlier.empty() ? "there is no truth.yaml beside it"
-                                      : "the experiment.yaml beside it does not name it") +
+                                      : "the truth.yaml beside it does not list its trial") +
                      "), so it is not replaced; choose another folder, or give --force");
   }
   for (const fs::path& file : earlier) {

@@ -108,6 +108,22 @@ TEST(ViconTest, MistakesAreNamed) {
   EXPECT_FALSE(ReadCsv(text.substr(0, text.find("Traj"))).markers.has_value());
 }
 
+// A file that was cut off may end within a number, which is another number then.
+TEST(RecordingFileTest, ALastRowWithoutALineEndIsPassedOver) {
+  const MarkerTrajectories made = ThreeMarkers();
+  for (std::string text : {ViconText(made), TrcText(made), MotiveText(made)}) {
+    while (text.back() == '\n') text.pop_back();
+    for (const int cut : {0, 2}) {
+      const RecordingFile file =
+          ReadCsv(text.substr(0, text.size() - static_cast<std::size_t>(cut)));
+      ASSERT_TRUE(file.markers.has_value());
+      EXPECT_EQ(file.markers->frame_count(), made.frame_count() - 1) << file.format;
+      EXPECT_TRUE(file.markers->positions.row(48).isApprox(made.positions.row(48), 1e-12));
+      EXPECT_NE(file.notes.back().find("no line end"), std::string::npos) << file.format;
+    }
+  }
+}
+
 TEST(TrcTest, FieldByField) {
   const RecordingFile file = ReadCsv(TrcText(ThreeMarkers()));
   EXPECT_EQ(file.format, "TRC");

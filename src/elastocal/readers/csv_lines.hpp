@@ -36,6 +36,18 @@ inline char FindFirstSeparator(const ByteSource& source) {
   return FindFirstSeparator(std::string_view(head.data(), source.Read(0, head)));
 }
 
+/// Whether the text ends within a line. The last row of a file of cameras may then be cut off, even
+/// within a number, and is passed over.
+inline bool EndsWithinALine(const ByteSource& source) {
+  std::array<char, 1> last{'\n'};
+  if (source.size() > 0) source.Read(source.size() - 1, last);
+  return last[0] != '\n' && last[0] != '\r';
+}
+
+/// The note about such a row.
+constexpr const char* kCutRow =
+    "the last row is passed over: no line end follows it, so that it may be cut off";
+
 /// Reads a text of separated values line by line, as programs of cameras export it: lines have
 /// different lengths, and the meaning of a line depends on its place. If the separator is not a
 /// comma, all numbers may have decimal commas.

@@ -25,8 +25,8 @@ Eigen::VectorXd ToVector(const Column& column) {
 }
 
 void AddOnce(const std::string& source, const std::string& joint, const char* what, Column& column,
-             std::map<std::string, Column*>& columns) {
-  if (columns.emplace(joint, &column).second) return;
+             std::map<std::string, Column>& columns) {
+  if (columns.try_emplace(joint, std::move(column)).second) return;
   throw InputError(source + ": two columns have the " + what + " of joint " + Quote(joint));
 }
 
@@ -46,9 +46,8 @@ std::string PlainColumnName(const std::string& name) {
 
 JointLog JoinColumns(const std::string& source, const std::vector<double>& time,
                      std::map<std::string, std::vector<double>>&& columns) {
-  std::map<std::string, Column*> positions, torques;
+  std::map<std::string, Column> positions, torques;
   for (auto& [name, column] : columns) {
-    RequireUtf8(name, source);
     std::string joint = name;
     if (TakeEnding(joint, "_velocity")) continue;
     if (TakeEnding(joint, "_torque") || TakeEnding(joint, "_effort")) {
@@ -58,7 +57,15 @@ JointLog JoinColumns(const std::string& source, const std::vector<double>& time,
       AddOnce(source, joint, "positions", column, positions);
     }
   }
+  return JoinJoints(source, time, std::move(positions), std::move(torques));
+}
+
+JointLog JoinJoints(const std::string& source, const std::vector<double>& time,
+                    std::map<std::string, std::vector<double>>&& positions,
+                    std::map<std::string, std::vector<double>>&& torques) {
+  for (const auto& [joint, column] : positions) RequireUtf8(joint, source);
   for (const auto& [joint, column] : torques) {
+    RequireUtf8(joint, source);
     if (positions.contains(joint)) continue;
     throw InputError(source + ": there are torques of joint " + Quote(joint) +
                      ", whose positions are missing");
@@ -70,17 +77,17 @@ JointLog JoinColumns(const std::string& source, const std::vector<double>& time,
   const auto count = static_cast<Eigen::Index>(positions.size());
   log.positions.resize(samples, count);
   // What has been copied is freed, so that a large log is in memory little more than once.
-  for (const auto& [joint, column] : positions) {
-    log.positions.col(static_cast<Eigen::Index>(log.names.size())) = ToVector(*column);
-    *column = Column();
+  for (auto& [joint, column] : positions) {
+    log.positions.col(static_cast<Eigen::Index>(log.names.size())) = ToVector(column);
+    column = Column();
     log.names.push_back(joint);
   }
   log.torques.setConstant(samples, count, kNaN);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto torque = torques.find(log.names[static_cast<std::size_t>(i)]);
     if (torque == torques.end()) continue;
-    log.torques.col(i) = ToVector(*torque->second);
-    *torque->second = Column();
+    log.torques.col(i) = ToVector(torque->second);
+    torque->second = Column();
   }
   CheckJointLog(log);
   return log;

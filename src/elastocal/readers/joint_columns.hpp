@@ -23,6 +23,11 @@ std::string PlainColumnName(const std::string& name);
 JointLog JoinColumns(const std::string& source, const std::vector<double>& time,
                      std::map<std::string, std::vector<double>>&& columns);
 
+/// The same of positions and torques by the names of joints, which are taken as they are.
+JointLog JoinJoints(const std::string& source, const std::vector<double>& time,
+                    std::map<std::string, std::vector<double>>&& positions,
+                    std::map<std::string, std::vector<double>>&& torques);
+
 /// Throws InputError naming the sample where time does not increase or a position is not finite.
 void CheckJointLog(const JointLog& log);
 

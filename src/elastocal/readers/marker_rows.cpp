@@ -56,6 +56,16 @@ void MarkerRows::Add(double x, double y, double z) {
 
 void MarkerRows::AddGap() { Append(kNaN, kNaN, kNaN); }
 
+void MarkerRows::RemoveLast(std::size_t markers) {
+  for (std::size_t count = 3 * markers; count > 0;) {
+    std::vector<double>& block = blocks_.back();
+    const std::size_t here = std::min(count, block.size());
+    block.resize(block.size() - here);
+    count -= here;
+    if (block.empty()) blocks_.pop_back();
+  }
+}
+
 void MarkerRows::Append(double x, double y, double z) {
   if (blocks_.empty() || blocks_.back().size() == kBlock) blocks_.emplace_back().reserve(kBlock);
   std::vector<double>& block = blocks_.back();

@@ -17,6 +17,9 @@ class MarkerRows {
   void Add(double x, double y, double z);
   void AddGap();
 
+  /// Forgets the last so many positions.
+  void RemoveLast(std::size_t markers);
+
   /// The trajectories of the rows so far, each of which must have as many markers as there are
   /// names. Rows are freed while they are copied, so that little more memory is needed than for the
   /// result.

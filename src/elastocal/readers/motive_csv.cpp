@@ -215,6 +215,15 @@ class MotiveReader {
       lines_.Fail("found " + std::to_string(count_) + " frames; Total Exported Frames is " +
                   FormatNumber(*stated));
     }
+    if (!lines_.blank() && EndsWithinALine(source_)) RemoveLastFrame();
+  }
+
+  void RemoveLastFrame() {
+    rows_.RemoveLast(markers_.size());
+    body_positions_.resize(body_positions_.size() - 3 * bodies_.size());
+    body_rotations_.resize(body_rotations_.size() - 4 * bodies_.size());
+    --count_;
+    notes_.emplace_back(kCutRow);
   }
 
   void AddMarker(std::size_t column) {

@@ -181,28 +181,29 @@ class NpzReader {
 
   JointLog ReadLog(const std::vector<double>& time) {
     const auto names = Take({"names", "joint_names", "name"});
-    std::map<std::string, std::vector<double>> columns;
     if (names) {
+      std::map<std::string, std::vector<double>> joints, efforts;
       if (!names->is_text || names->shape.size() != 1) Fail("'names' is no list of texts");
       if (const auto positions = Take({"positions", "position", "q"})) {
-        AddColumns(names->texts, *positions, time.size(), "", columns);
+        AddColumns(names->texts, *positions, time.size(), "positions", joints);
       } else {
         Fail("there are names of joints, but no array 'positions' or 'q'");
       }
       if (const auto torques = Take({"torques", "torque", "efforts", "effort", "tau"})) {
-        AddColumns(names->texts, *torques, time.size(), "_torque", columns);
+        AddColumns(names->texts, *torques, time.size(), "torques", efforts);
       }
       Take({"velocities", "velocity", "dq"});
-    } else {
-      AddArrays(time.size(), columns);
+      if (joints.empty()) Fail("there is no array of any joint beside the time");
+      return JoinJoints(source_.name(), time, std::move(joints), std::move(efforts));
     }
+    std::map<std::string, std::vector<double>> columns;
+    AddArrays(time.size(), columns);
     if (columns.empty()) Fail("there is no array of any joint beside the time");
     return JoinColumns(source_.name(), time, std::move(columns));
   }
 
   void AddColumns(const std::vector<std::string>& names, const NpyArray& array, std::size_t samples,
-                  const std::string& ending, std::map<std::string, std::vector<double>>& columns) {
-    const std::string what = ending.empty() ? "positions" : "torques";
+                  const std::string& what, std::map<std::string, std::vector<double>>& columns) {
     if (array.is_text || array.shape != std::vector{samples, names.size()}) {
       Fail("the array of " + what + " is not of " + std::to_string(samples) + " x " +
            std::to_string(names.size()) + " numbers (samples x joints)");
@@ -210,7 +211,7 @@ class NpzReader {
     for (std::size_t k = 0; k < names.size(); ++k) {
       std::vector<double> column(samples);
       for (std::size_t i = 0; i < samples; ++i) column[i] = array.numbers[i * names.size() + k];
-      if (!columns.emplace(names[k] + ending, std::move(column)).second) {
+      if (!columns.emplace(names[k], std::move(column)).second) {
         Fail("two joints of the name " + Quote(names[k]));
       }
     }

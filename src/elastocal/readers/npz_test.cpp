@@ -109,6 +109,14 @@ TEST(NpzTest, TimesOfNumpy) {
   EXPECT_NEAR(ReadRecordingFile(Numpy("joints_datetime.npz"), {}).joints->time_s[0], 1.7e9, 1e-6);
 }
 
+// What a list of names says, are the names of the joints.
+TEST(NpzTest, NamesOfAListKeepTheirEndings) {
+  const JointLog log = ReadRecordingFile(Numpy("joints_endings.npz"), {}).joints.value();
+  EXPECT_EQ(log.names, (std::vector<std::string>{"a", "lift_position", "wheel_velocity"}));
+  EXPECT_EQ(log.positions.row(1), Eigen::RowVector3d(0.6, 0.4, 0.5));
+  EXPECT_EQ(log.torques.row(1), Eigen::RowVector3d(6.0, 4.0, 5.0));
+}
+
 TEST(NpzTest, MistakesAreNamed) {
   const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(4, 0.0, 0.3), q = Eigen::VectorXd::Random(4);
   const std::string good = NpzBytes({{"t", t}, {"elbow", q}});

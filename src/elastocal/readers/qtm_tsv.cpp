@@ -4,186 +4,29 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 
 #include "elastocal/files/bounds.hpp"
 #include "elastocal/files/output_files.hpp"
 #include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
-#include "elastocal/math/utf8.hpp"
 #include "elastocal/readers/byte_source.hpp"
-#include "elastocal/readers/decimal_numbers.hpp"
+#include "elastocal/readers/csv_lines.hpp"
 #include "elastocal/readers/marker_rows.hpp"
+#include "elastocal/readers/qtm_header.hpp"
 #include "elastocal/tables/table_reader.hpp"
 #include "elastocal/tables/text.hpp"
 
 namespace elastocal {
 namespace {
 
-/// Largest number of lines above the frames: more are no header, and would only take long to read.
-constexpr int kMostHeaderLines = 10000;
-
-/// The header above the frames: lines `KEY<tab>value` and a row of column names `[Frame] [Time]
-/// NAME X ...`. Either may be absent, but one of them has to name the markers.
-struct QtmHeader {
-  std::vector<std::string> names;     ///< of the markers, one or more
-  double rate_hz = 0.0;               ///< 0 where the file does not say
-  std::optional<std::size_t> frames;  ///< how many there should be, where the file says so
-  /// The columns before those of the markers, "Frame" and "Time", where a row names the columns.
-  std::optional<std::vector<std::string>> leading_columns;
-};
-
 /// The numbers of the frames.
 struct QtmFrames {
   Eigen::MatrixXd positions;                 ///< frames x 3 N_M, m; NaN where not seen
-  std::vector<std::vector<double>> leading;  ///< columns before those of the markers, at most two
-  /// "Frame" or "Time" for each of `leading`; empty if there is one and no row names it.
+  std::vector<std::vector<double>> leading;  ///< columns before those of the markers
+  /// "Frame", "Time" or "SMPTE" (not read) for each of `leading`; empty if there is one and no row
+  /// names it.
   std::vector<std::string> leading_names;
   int first_line = 1;
-};
-
-/// A QTM file line by line: lines and their cells. Programs like to end their lines with a tab.
-struct QtmLines {
-  LineReader reader;
-  std::vector<std::string_view> cells = {};  ///< of the line read last
-  DecimalNumbers numbers = {};
-
-  bool Next() {
-    std::span<char> line;
-    if (!reader.Next(line)) return false;
-    SplitCells(line, '\t', Quotes::kOrdinary, cells);
-    return true;
-  }
-  bool blank() const { return cells.size() == 1 && cells[0].empty(); }
-  [[noreturn]] void Fail(const std::string& message) const {
-    throw InputError(Place(reader.source(), std::max(reader.line(), 1)) + message);
-  }
-  [[noreturn]] void FailCell(std::size_t i, const std::string& name,
-                             const std::string& expected) const {
-    Fail("column " + std::to_string(i + 1) + name + ": found " + Quote(cells[i]) + "; expected " +
-         expected);
-  }
-};
-
-bool IsKey(std::string_view cell) {
-  constexpr std::string_view kCharacters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
-  return !cell.empty() && cell.find_first_not_of(kCharacters) == std::string_view::npos &&
-         cell.find_first_of("0123456789") != 0;
-}
-
-class HeaderReader {
- public:
-  explicit HeaderReader(QtmLines& lines) : lines_(lines) {}
-
-  /// Reads up to the first frame, whose cells are then in the lines; there may be none.
-  QtmHeader Read() {
-    bool header = true;
-    while (header && lines_.Next()) header = ReadLine();
-    if (header) lines_.cells.clear();
-    if (header_.names.empty()) {
-      lines_.Fail(
-          "nothing above names the markers; expected a line MARKER_NAMES and the names, or a row "
-          "of column names NAME X, NAME Y, NAME Z, ..., separated by tabs");
-    }
-    if (marker_count_ && *marker_count_ != header_.names.size()) {
-      lines_.Fail("above this line " + std::to_string(header_.names.size()) +
-                  " markers are named; NO_OF_MARKERS is " + std::to_string(*marker_count_));
-    }
-    return std::move(header_);
-  }
-
- private:
-  /// False for the first frame.
-  bool ReadLine() {
-    if (lines_.reader.line() > kMostHeaderLines) {
-      lines_.Fail("more than 10000 lines above the first frame");
-    }
-    if (lines_.blank()) return true;
-    const std::string_view first = lines_.cells[0];
-    if (header_.leading_columns || IsGap(first) || lines_.numbers.Parse(first)) return false;
-    std::vector<std::string> cells(lines_.cells.begin(), lines_.cells.end());
-    while (cells.size() > 1 && cells.back().empty()) cells.pop_back();
-    if (first == "Frame" || first == "Time" || first.ends_with(" X")) {
-      ReadColumnNames(cells);
-    } else if (IsKey(first)) {
-      ReadKey(cells);
-    } else {
-      lines_.FailCell(0, "",
-                      "a header line (KEY and value), column names (Frame, Time, NAME X, ...) or "
-                      "numbers, separated by tabs");
-    }
-    return true;
-  }
-
-  void ReadKey(const std::vector<std::string>& cells) {
-    const std::set<std::string> known = {"NO_OF_FRAMES", "NO_OF_MARKERS", "FREQUENCY",
-                                         "DATA_INCLUDED", "MARKER_NAMES"};
-    const std::string& key = cells[0];
-    if (!known.contains(key)) return;
-    if (!keys_.insert(key).second) lines_.Fail("a second line " + key);
-    const std::string value = cells.size() > 1 ? cells[1] : "";
-    if (key == "NO_OF_FRAMES") header_.frames = Count(key, value);
-    if (key == "NO_OF_MARKERS") marker_count_ = Count(key, value);
-    if (key == "MARKER_NAMES") SetNames({cells.begin() + 1, cells.end()});
-    if (key == "DATA_INCLUDED" && value != "3D") {
-      lines_.Fail("DATA_INCLUDED: found " + Quote(value) +
-                  "; 3D, positions of markers, was expected");
-    }
-    if (key != "FREQUENCY") return;
-    header_.rate_hz = lines_.numbers.Parse(value).value_or(0.0);
-    if (header_.rate_hz <= 0.0) {
-      lines_.Fail("FREQUENCY: found " + Quote(value) +
-                  "; frames per second, above 0, were expected");
-    }
-  }
-
-  std::size_t Count(const std::string& key, const std::string& value) const {
-    constexpr double kMost = 1e9;
-    const double number = ParseNumber(value).value_or(-1.0);
-    if (number < 0.0 || number > kMost || number != std::floor(number)) {
-      lines_.Fail(key + ": found " + Quote(value) + "; a whole number was expected");
-    }
-    return static_cast<std::size_t>(number);
-  }
-
-  void ReadColumnNames(const std::vector<std::string>& cells) {
-    std::vector<std::string> leading;
-    std::size_t i = 0;
-    for (; i < cells.size() && (cells[i] == "Frame" || cells[i] == "Time"); ++i) {
-      if (i > 0 && cells[i] == leading[0]) lines_.Fail("column 2: a second column " + cells[i]);
-      leading.push_back(cells[i]);
-    }
-    std::vector<std::string> names;
-    for (; i < cells.size(); ++i) {
-      const std::size_t axis = (i - leading.size()) % 3;
-      if (axis == 0) names.push_back(cells[i].substr(0, cells[i].rfind(' ')));
-      const std::string expected = names.back() + ' ' + "XYZ"[axis];
-      if (cells[i] != expected) lines_.FailCell(i, "", Quote(expected));
-    }
-    if ((cells.size() - leading.size()) % 3 != 0) {
-      lines_.Fail("the columns X, Y and Z of marker " + Quote(names.back()) + " are not complete");
-    }
-    if (keys_.contains("MARKER_NAMES") && names != header_.names) {
-      lines_.Fail("the columns are of other markers than MARKER_NAMES says");
-    }
-    SetNames(std::move(names));
-    header_.leading_columns = std::move(leading);
-  }
-
-  void SetNames(std::vector<std::string> names) {
-    std::set<std::string> seen;
-    for (const std::string& name : names) {
-      if (name.empty()) lines_.Fail("a marker without a name");
-      RequireUtf8(name, lines_.reader.source(), lines_.reader.line());
-      if (!seen.insert(name).second) lines_.Fail("two markers of the name " + Quote(name));
-    }
-    header_.names = std::move(names);
-  }
-
-  QtmLines& lines_;
-  QtmHeader header_;
-  std::set<std::string> keys_;
-  std::optional<std::size_t> marker_count_;
 };
 
 /// Number of columns before those of the markers, if no row names them. They are never empty,
@@ -251,6 +94,11 @@ class FrameReader {
     }
     std::size_t i = 0;
     for (std::vector<double>& column : frames_.leading) {
+      if (frames_.leading.size() == frames_.leading_names.size() &&
+          frames_.leading_names[i] == "SMPTE") {
+        ++i;
+        continue;
+      }
       column.push_back(Number(i));
       if (std::isnan(column.back())) Fail(i, "a number");
       ++i;
@@ -368,29 +216,52 @@ class Timing {
   const std::string& source_;
 };
 
-MarkerTrajectories ParseQtmStream(std::istream& stream, const std::string& source) {
+/// Removes the trajectories without a name.
+void DropUnnamed(MarkerTrajectories& trajectories, std::vector<std::string>* notes) {
+  std::vector<Eigen::Index> columns;
+  for (std::size_t m = 0; m < trajectories.names.size(); ++m) {
+    if (trajectories.names[m].empty()) continue;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      columns.push_back(3 * static_cast<Eigen::Index>(m) + axis);
+    }
+  }
+  const std::size_t unnamed = std::erase(trajectories.names, "");
+  if (unnamed == 0) return;
+  trajectories.positions = trajectories.positions(Eigen::all, columns).eval();
+  if (notes == nullptr) return;
+  notes->push_back(std::to_string(unnamed) + " trajectories without a name are passed over");
+}
+
+MarkerTrajectories ParseQtmStream(std::istream& stream, const std::string& source,
+                                  std::vector<std::string>* notes) {
   QtmLines lines{LineReader(stream, source)};
-  const QtmHeader header = HeaderReader(lines).Read();
+  const QtmHeader header = ReadQtmHeader(lines);
   QtmFrames frames = FrameReader(lines, header).Read();
   MarkerTrajectories result;
   result.source = source;
   result.names = header.names;
   result.rate_hz = Timing(header.rate_hz, frames, source).Rate();
   result.positions = std::move(frames.positions);
+  DropUnnamed(result, notes);
   return result;
 }
 
 }  // namespace
 
-MarkerTrajectories ReadQtmTsv(const std::filesystem::path& file) {
+MarkerTrajectories ReadQtmTsv(const std::filesystem::path& file, std::vector<std::string>* notes) {
   const ByteSource source = ByteSource::Open(file);
   SourceStream stream(source);
-  return ParseQtmStream(stream, source.name());
+  MarkerTrajectories trajectories = ParseQtmStream(stream, source.name(), notes);
+  if (EndsWithinALine(source)) {
+    trajectories.positions.conservativeResize(trajectories.positions.rows() - 1, Eigen::NoChange);
+    if (notes != nullptr) notes->emplace_back(kCutRow);
+  }
+  return trajectories;
 }
 
 MarkerTrajectories ParseQtmTsv(std::string_view text, const std::string& source) {
   TextStream stream(text);
-  return ParseQtmStream(stream, source);
+  return ParseQtmStream(stream, source, nullptr);
 }
 
 }  // namespace elastocal

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "elastocal/measurement/trial.hpp"
 
@@ -12,11 +13,14 @@ namespace elastocal {
 /// Reads a Qualisys QTM 3-D TSV (docs/formats.md): lines `KEY<tab>value`, a row of column names,
 /// then one row a frame in mm. The columns Frame and Time and all but the names of the markers may
 /// be absent. A marker is not seen where its cells are empty, NaN, NULL or 0 0 0. The rate is
-/// FREQUENCY or follows from the column Time. Cost: linear in the size of the file.
+/// FREQUENCY or, where this is absent or EXT, follows from the column Time. The column SMPTE and
+/// trajectories without a name are passed over, and a last row that no line end follows; `notes`
+/// gets a sentence about these two. Cost: linear in the size of the file.
 /// Throws InputError naming file, line and column: a number that is none, rows of unequal length,
 /// frames that do not follow each other, another number of markers or frames than the header says,
 /// no rate. Files may be large: they are read line by line.
-MarkerTrajectories ReadQtmTsv(const std::filesystem::path& file);
+MarkerTrajectories ReadQtmTsv(const std::filesystem::path& file,
+                              std::vector<std::string>* notes = nullptr);
 
 /// The same from the text of a file; `source` names it in messages.
 MarkerTrajectories ParseQtmTsv(std::string_view text, const std::string& source);

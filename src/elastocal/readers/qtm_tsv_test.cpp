@@ -96,6 +96,42 @@ TEST(QtmTsv, FindsTheRate) {
   ExpectTsvError("FREQUENCY\t100;5\n" + names + "1\t2\t3\n", {"t.tsv:1: FREQUENCY", "'100;5'"});
 }
 
+// The clock of another device drives the cameras, and a time code stands beside the time.
+TEST(QtmTsv, AnExternalTimebaseAndATimeCode) {
+  const std::string head = "FREQUENCY\tEXT\nMARKER_NAMES\tA\n";
+  const MarkerTrajectories t =
+      ParseTsv(head +
+               "Frame\tTime\tSMPTE\tA X\tA Y\tA Z\n1\t0.00\t10:38:02:12\t1\t2\t3\n"
+               "2\t0.01\t10:38:02:13\t4\t5\t6\n");
+  EXPECT_NEAR(t.rate_hz, 100.0, 1e-9);
+  EXPECT_NEAR(t.positions(1, 2), 0.006, kTsvRounding);
+  ExpectTsvError(head + "Frame\tA X\tA Y\tA Z\n1\t1\t2\t3\n", {"rate is not known"});
+  ExpectTsvError(head + "Frame\tSMPTE\tSMPTE\tA X\n", {"t.tsv:3: column 3", "second column"});
+}
+
+TEST(QtmTsv, TrajectoriesWithoutANameArePassedOver) {
+  const std::string names = "FREQUENCY\t100\nNO_OF_MARKERS\t4\nMARKER_NAMES\tA\t\tB\t\n";
+  const std::string row = "1\t2\t3\t4\t5\t6\t7\t8\t9\t10\t11\t12\n";
+  const auto expect = [&](const MarkerTrajectories& t) {
+    EXPECT_EQ(t.names, (std::vector<std::string>{"A", "B"}));
+    ASSERT_EQ(t.positions.cols(), 6);
+    EXPECT_NEAR(t.positions(0, 0), 0.001, kTsvRounding);
+    EXPECT_NEAR(t.positions(0, 3), 0.007, kTsvRounding);
+  };
+  expect(ParseTsv(names + row));
+  const std::string columns = "A X\tA Y\tA Z\t X\t Y\t Z\tB X\tB Y\tB Z\t X\t Y\t Z\n";
+  expect(ParseTsv(names + columns + row));
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "unnamed.tsv";
+  WriteFile(file, names + row + row.substr(0, row.size() - 2));
+  std::vector<std::string> notes;
+  const MarkerTrajectories t = ReadQtmTsv(file, &notes);
+  std::filesystem::remove(file);
+  expect(t);
+  EXPECT_EQ(t.frame_count(), 1);  // no line end follows the last row
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_EQ(notes[0], "2 trajectories without a name are passed over");
+}
+
 TEST(QtmTsv, FramesFollowEachOther) {
   const std::string head = "FREQUENCY\t100\nMARKER_NAMES\tA\nFrame\tTime\tA X\tA Y\tA Z\n";
   const std::string cells = "\t1\t2\t3\n";
@@ -168,7 +204,7 @@ TEST(QtmTsv, NamesWrongHeaders) {
   ExpectTsvError(kShortTsv, {"t.tsv", "no frame"});
   ExpectTsvError(kShortTsv + "\r\n\r\n", {"t.tsv", "no frame"});
   ExpectTsvError("MARKER_NAMES\tA\tA\n", {"t.tsv:1: ", "two markers", "'A'"});
-  ExpectTsvError("MARKER_NAMES\tA\t\tB\n", {"t.tsv:1: ", "without a name"});
+  ExpectTsvError("MARKER_NAMES\t\t\n1\t2\t3\n", {"t.tsv:2: ", "nothing above names"});
   ExpectTsvError("MARKER_NAMES\tA\nMARKER_NAMES\tA\n", {"t.tsv:2: ", "second line MARKER_NAMES"});
   ExpectTsvError("NO_OF_MARKERS\t3\n" + kShortTsv + "1\n", {"t.tsv:4: ", "2 markers", "is 3"});
   ExpectTsvError("NO_OF_MARKERS\tmany\n", {"t.tsv:1: NO_OF_MARKERS", "'many'", "whole number"});

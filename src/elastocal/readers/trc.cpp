@@ -39,6 +39,10 @@ class TrcReader {
       throw InputError(source_.name() + ": found " + std::to_string(count) +
                        " frames; NumFrames is " + FormatNumber(*stated));
     }
+    if (!lines_.blank() && EndsWithinALine(source_)) {
+      rows.RemoveLast(names_.size());
+      file.notes.emplace_back(kCutRow);
+    }
     file.markers = rows.Take(source_.name(), DistinctNames(names_), rate_);
     return file;
   }

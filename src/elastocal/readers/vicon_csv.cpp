@@ -36,14 +36,14 @@ class ViconReader {
       } else if (file.markers) {
         lines_.Fail("a second section Trajectories");
       } else {
-        file.markers = ReadTrajectories();
+        file.markers = ReadTrajectories(file.notes);
       }
     }
     return file;
   }
 
  private:
-  MarkerTrajectories ReadTrajectories() {
+  MarkerTrajectories ReadTrajectories(std::vector<std::string>& notes) {
     lines_.Expect("the rate of the trajectories");
     const double rate = lines_.Number(0);
     if (rate <= 0.0) lines_.FailCell(0, "frames per second, above 0,");
@@ -56,7 +56,8 @@ class ViconReader {
     MarkerRows rows;
     Steps steps("Frame", 1.0, 0.0);
     std::size_t frames = 0;
-    while (lines_.Next() && !lines_.blank()) {
+    bool more = false;
+    while ((more = lines_.Next()) && !lines_.blank()) {
       if (lines_.count() > width_ &&
           std::any_of(lines_.cells().begin() + static_cast<std::ptrdiff_t>(width_),
                       lines_.cells().end(), [](auto cell) { return !cell.empty(); })) {
@@ -68,6 +69,11 @@ class ViconReader {
         rows.Add(unit * x, unit * y, unit * z);
       }
       ++frames;
+    }
+    if (!more && frames > 0 && EndsWithinALine(source_)) {
+      rows.RemoveLast(columns_.size());
+      --frames;
+      notes.emplace_back(kCutRow);
     }
     if (frames == 0) lines_.Fail("the section Trajectories has no frame");
     return rows.Take(source_.name(), DistinctNames(names_), rate);
