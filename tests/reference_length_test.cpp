@@ -94,6 +94,21 @@ TEST_F(ReferenceLengths, NameTheTrialWhoseScaleIsWrong) {
       << said;
 }
 
+TEST_F(ReferenceLengths, NameEachFactorOfTrialsThatDiffer) {
+  const std::vector<TrialSummary> trials = Calibrated().trials;
+  ASSERT_GE(trials.size(), 2u);
+  const std::string first = trials[0].trial.name, second = trials[1].trial.name;
+  Scale(0.997, first);
+  Scale(1.004, second);
+  const std::string said = Objections(Calibrated());
+  EXPECT_NE(said.find("positions are 0.99"), std::string::npos) << said;
+  EXPECT_NE(said.find("times the true ones in trial " + first + ", 1.00"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("times in trial " + second + " (--accept scale:" + first + "=0.99"),
+            std::string::npos)
+      << said;
+}
+
 TEST_F(ReferenceLengths, ThatAreNotSeenAreSaidToBe) {
   project_.recording.reference_lengths = {{{"BAR_1", "BAR_3"}, 0.5, 5e-5}};
   const CalibrationRun run = Calibrated();

@@ -15,6 +15,7 @@
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/mistakes/find_faults.hpp"
 #include "elastocal/pipeline/choose_causes.hpp"
+#include "elastocal/pipeline/coverage.hpp"
 
 namespace elastocal::cli {
 namespace {
@@ -101,15 +102,24 @@ std::string HeldOutText(const CalibrationRun& run) {
          "recording.\n";
 }
 
+/// Which calibrated joints and chains no held-out data judge; empty where they judge all.
+std::string ExceptNotJudged(const CalibrationRun& run) {
+  const std::vector<std::string> not_judged = NotJudged(run.coverage);
+  if (not_judged.empty()) return "";
+  return ", but no held-out data judge " + FirstOf(not_judged, kMostNamed);
+}
+
 /// The verdict in one sentence.
 std::string VerdictText(const CalibrationRun& run) {
   if (!run.verdict.objections.empty()) {
     return "Verdict: do not deploy. " + run.verdict.objections.front() + "\n";
   }
   const Deployment& deployment = run.deployment;
+  const bool on_trials = deployment.judged_on == "held-out trials";
+  const std::string deploy =
+      on_trials ? "deploy" + ExceptNotJudged(run) + ". On held-out motions " : "";
   std::string text =
-      fmt::format("Verdict: {}from {} to {} mm by the URDF alone",
-                  run.held_out ? "deploy. On held-out motions " : "",
+      fmt::format("Verdict: {}from {} to {} mm by the URDF alone", deploy,
                   Millimetres(deployment.uncalibrated, 3), Millimetres(deployment.urdf, 3));
   if (std::isfinite(deployment.compensated)) {
     const std::vector<Parameter>& parameters = run.comparison.largest().model.parameters;
@@ -118,12 +128,14 @@ std::string VerdictText(const CalibrationRun& run) {
     text += fmt::format(", {} mm with {}", Millimetres(deployment.compensated, 3),
                         CompensationInWords(springs, run.extra));
   }
-  if (run.held_out) return text + ".\n" + ScaleText(run);
+  if (on_trials) return text + ".\n" + ScaleText(run);
   const bool folded = run.cross_validation.folds > 0;
   return text +
          (folded ? HeldOutText(run)
-                 : ".\n  In the fit. Before deploying, cross-validate (--kfold 10) and validate "
-                   "on another recording.\n") +
+                 : fmt::format(
+                       ".\n  In the fit{}. Before deploying, cross-validate (--kfold 10) and "
+                       "validate on another recording.\n",
+                       run.held_out ? ", because no trial for validation could be judged" : "")) +
          ScaleText(run);
 }
 

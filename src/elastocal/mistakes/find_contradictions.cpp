@@ -98,6 +98,36 @@ std::string OrInThoseOfTheEstimate(const RecordingFault& fault, const Recording&
                              ", which the recording does not tell: measure it there again";
 }
 
+/// `factor` as names that correct it in each trial of the recording.
+std::string NamesOfScale(double factor, const Recording& recording) {
+  std::string names;
+  for (const Trial& trial : recording.trials) {
+    names += fmt::format(" scale:{}={:.5f}", trial.name, factor);
+  }
+  return names;
+}
+
+/// If the cameras' scale is wrong in all held-out trials, adds that that of the trials of the
+/// estimate may be wrong by the inverse instead; else empty.
+std::string OrInverseScale(const std::vector<RecordingFault>& faults, const Recording& all,
+                           const Recording& estimated) {
+  double scale = 1.0;
+  int scales = 0;
+  for (const RecordingFault& fault : faults) {
+    if (fault.kind != FaultKind::kCameraScale) continue;
+    if (fault.trial < std::ssize(estimated.trials)) return "";
+    scale *= 1.0 + fault.size;
+    ++scales;
+  }
+  if (scales == 0 || scales < std::ssize(all.trials) - std::ssize(estimated.trials)) return "";
+  const double inverse = 1.0 / std::pow(scale, 1.0 / scales);
+  return fmt::format(
+      "; they may as well be {:.4f} times the true ones in trial {} (--accept{} corrects that), "
+      "which the recording does not tell: measure a known length (recording.reference_lengths)",
+      inverse, TrialNames(estimated, TrialsWith(estimated, [](int) { return true; })),
+      NamesOfScale(inverse, estimated));
+}
+
 /// The recording without the observations that the estimate left out.
 Recording AsUsed(const Recording& recording, const CalibrationResult& result) {
   Recording used = recording;
@@ -208,14 +238,10 @@ std::optional<double> ScaleBetween(const Project& project, const RecordedModel& 
 }
 
 std::string DescribeScaleBetween(double factor, const Recording& recording) {
-  std::string accept;
-  for (const Trial& trial : recording.trials) {
-    accept += fmt::format(" scale:{}={:.5f}", trial.name, factor);
-  }
   return fmt::format(
       "{}camera positions are {:.4f} times the true ones in trial {} (--accept{} corrects it)",
       kContradict, factor, TrialNames(recording, TrialsWith(recording, [](int) { return true; })),
-      accept);
+      NamesOfScale(factor, recording));
 }
 
 /// Says that the held-out trials are of another robot; empty where they are not. They are if two
@@ -315,7 +341,8 @@ std::vector<std::string> FindContradictions(const Project& project, const Record
         words.complete ? "" : AnotherRobot(project, robot, recording, all, words.left);
     if (!other.empty()) return {other};
     return {kContradict + words.text +
-            OrInThoseOfTheEstimate(faults.front(), all.recording, recording)};
+            OrInThoseOfTheEstimate(faults.front(), all.recording, recording) +
+            OrInverseScale(words.faults, all.recording, recording)};
   }
   if (!(contrasts.largest() > kContradicted)) return {};
   const std::vector<Knock> knocks = KnocksOfAll(project, robot, all.recording);

@@ -34,6 +34,7 @@
 namespace elastocal {
 namespace {
 
+constexpr double kAlikeScales = 5e-4;
 constexpr double kLeftByOdd = 0.5;  // share of the error of a fit, without them
 // Share of the error of a fit that has no faults, but for instance gears instead of wrong gains.
 constexpr double kLeftBesideGears = 0.8;
@@ -44,42 +45,59 @@ bool IsFarOff(const std::vector<RecordingFault>& gears) {
                      [](const RecordingFault& gear) { return std::abs(gear.size) > kFarOffGear; });
 }
 
-/// Names that correct a wrong scale: `scale=1.00200` for all trials, else `scale:TRIAL=1.00200` for
-/// each.
-std::string ScaleCorrections(const std::vector<const TrialSummary*>& wrong, bool all) {
-  constexpr double kAlike = 5e-4;
-  double least = wrong.front()->scale->size, most = least, sum = 0.0;
-  std::string each;
+/// Whether one factor describes the scales of all trials.
+bool AreAlike(const std::vector<const TrialSummary*>& wrong) {
+  double least = wrong.front()->scale->size, most = least;
   for (const TrialSummary* trial : wrong) {
     least = std::min(least, trial->scale->size);
     most = std::max(most, trial->scale->size);
+  }
+  return most - least <= kAlikeScales;
+}
+
+/// Names that correct a wrong scale: `scale=1.00200` for all trials, else `scale:TRIAL=1.00200` for
+/// each.
+std::string ScaleCorrections(const std::vector<const TrialSummary*>& wrong, bool all) {
+  double sum = 0.0;
+  std::string each;
+  for (const TrialSummary* trial : wrong) {
     sum += trial->scale->size;
     each += fmt::format(" scale:{}={:.5f}", trial->trial.name, 1.0 + trial->scale->size);
   }
-  if (!all || most - least > kAlike) return each;
+  if (!all || !AreAlike(wrong)) return each;
   return fmt::format(" scale={:.5f}", 1.0 + sum / static_cast<double>(wrong.size()));
+}
+
+/// "1.00502 +- 0.00012 times the true ones in trial a, 0.99502 +- 0.00012 times in trial b".
+std::string TimesInTrials(const std::vector<const TrialSummary*>& wrong, bool all) {
+  const std::string first = Describe(*wrong.front()->scale) + " times the true ones in ";
+  if (all && AreAlike(wrong)) return first + "all trials";
+  std::string text = first + "trial " + wrong.front()->trial.name;
+  for (std::size_t k = 1; k < wrong.size(); ++k) {
+    text += ", ";
+    if (!AreAlike(wrong)) text += Describe(*wrong[k]->scale) + " times in trial ";
+    text += wrong[k]->trial.name;
+  }
+  return text;
 }
 
 /// A sentence about the trials whose scale the reference lengths contradict; empty without any.
 std::string DescribeWrongScales(const std::vector<TrialSummary>& trials) {
   std::vector<const TrialSummary*> wrong;
   bool all = true;
-  std::string names;
   for (const TrialSummary& trial : trials) {
     if (!trial.refused.empty()) continue;
     if (trial.scale && IsWrong(*trial.scale)) {
       wrong.push_back(&trial);
-      names += (names.empty() ? "" : ", ") + trial.trial.name;
     } else {
       all = false;
     }
   }
   if (wrong.empty()) return "";
   return fmt::format(
-      "the cameras' scale is wrong: by the reference lengths, positions are {} times the true ones "
-      "in {} (--accept{} corrects it)",
-      Describe(*wrong.front()->scale), all ? "all trials" : "trial " + names,
-      ScaleCorrections(wrong, all));
+      "the cameras' scale is wrong: by the reference lengths, positions are {} (--accept{} "
+      "corrects it)",
+      TimesInTrials(wrong, all), ScaleCorrections(wrong, all));
 }
 
 /// Finds mistakes in a few rows of a table that are small compared with errors of the nominal

@@ -71,20 +71,14 @@ class FaultExplanation {
     if (single) return Remedy(faults_.front()) + (refuted_ ? kOrInAllOthers : "");
     const std::string together = SeveralJoints();
     if (!together.empty()) return together;
+    if (complete_) return FaultsAndRemedies(faults_, project_.tree, general_.recording);
     std::string text;
-    std::vector<std::string> names;
     for (const RecordingFault& one : faults_) {
       text += (text.empty() ? "" : "; ") + DescribeFault(one, project_.tree, general_.recording);
-      const auto name = NameOfCorrection(one, project_.tree, general_.recording);
-      if (name) names.push_back(*name);
     }
-    if (!complete_) {
-      return "something differs between the postures that no few faults explain; nearest to it "
-             "come: " +
-             text;
-    }
-    if (names.size() < faults_.size()) return text;
-    return fmt::format("{} (--accept {} corrects them)", text, fmt::join(names, " "));
+    return "something differs between the postures that no few faults explain; nearest to it "
+           "come: " +
+           text;
   }
 
  private:

@@ -30,9 +30,14 @@ struct GeneralFault {
 };
 
 /// Text such as "arm_4_joint: its positions are 1.05 +- 0.01 times the true ones (--accept NAME
-/// corrects it)".
+/// corrects it)". Beside the gain of a slide, the text has the scale of the cameras that explains
+/// as much, with its name.
 std::string FaultAndRemedy(const RecordingFault& fault, const RobotTree& tree,
                            const Recording& recording);
+
+/// The same of several faults, without names where one of them has none.
+std::string FaultsAndRemedies(const std::vector<RecordingFault>& faults, const RobotTree& tree,
+                              const Recording& recording);
 
 /// Result of ExplainFault.
 struct FaultsInWords {

@@ -147,69 +147,6 @@ std::string InWords(const StatedCorrection& correction, const RobotTree& tree) {
                      where, from);
 }
 
-/// Names of the markers that a joint moves relative to the root link.
-std::set<std::string> MarkersBeyond(const Project& project, int coordinate) {
-  const RobotTree& tree = project.tree;
-  std::set<std::string> beyond;
-  for (const Marker& marker : project.markers) {
-    for (const int k : JointsToBody(tree, tree.links[Size(marker.link)].body)) {
-      const std::vector<Drive> drives = DrivesOf(tree.joints[Size(k)]);
-      if (std::ranges::find(drives, coordinate, &Drive::coordinate) != drives.end()) {
-        beyond.insert(marker.name);
-      }
-    }
-  }
-  return beyond;
-}
-
-bool SeesAny(const Recording& recording, int posture, const std::set<std::string>& markers) {
-  for (int m = 0; m < recording.marker_count(); ++m) {
-    const bool wanted = markers.contains(recording.marker_names[Size(m)]);
-    if (wanted && Seen(recording, posture, m)) return true;
-  }
-  return false;
-}
-
-/// Names of the trials that move a joint while a marker that it moves is seen.
-std::vector<std::string> TrialsThatShow(const Recording& recording, int coordinate,
-                                        const std::set<std::string>& markers) {
-  std::vector<int> seen;
-  for (int i = 0; i < recording.posture_count(); ++i) {
-    if (SeesAny(recording, i, markers)) seen.push_back(i);
-  }
-  std::vector<std::string> names;
-  for (const int trial : AllTrialsThatMove(SelectPostures(recording, seen), coordinate)) {
-    names.push_back(recording.trials[Size(trial)].name);
-  }
-  return names;
-}
-
-/// Empty where a trial shows the joint in the state of the estimate.
-std::string DescribeUnconfirmed(const StatedCorrection& correction,
-                                const std::vector<StatedCorrection>& all, const Project& project,
-                                const Measurements& measured) {
-  const std::set<std::string> beyond = MarkersBeyond(project, correction.coordinate);
-  const std::vector<std::string> of_estimate =
-      TrialsThatShow(measured.calibration, correction.coordinate, beyond);
-  const std::vector<std::string> held_out =
-      TrialsThatShow(measured.validation, correction.coordinate, beyond);
-  const auto undone_in = [&](const std::string& trial) {
-    return std::any_of(all.begin(), all.end(), [&](const StatedCorrection& one) {
-      return one.kind == correction.kind && one.linkage < 0 &&
-             one.coordinate == correction.coordinate && (one.trial.empty() || one.trial == trial);
-    });
-  };
-  const bool unconfirmed = !of_estimate.empty() && !held_out.empty() &&
-                           std::none_of(of_estimate.begin(), of_estimate.end(), undone_in) &&
-                           std::all_of(held_out.begin(), held_out.end(), undone_in);
-  if (!unconfirmed) return "";
-  return fmt::format(
-      "{}: its positions are corrected in all trials for validation that show it ({}), and not in "
-      "those of the estimate ({}): nothing shows which of the two the robot's log is like now; "
-      "record one more trial for validation that moves it in sight of the cameras",
-      correction.joint, fmt::join(held_out, ", "), fmt::join(of_estimate, ", "));
-}
-
 }  // namespace
 
 std::optional<StatedCorrection> ParseStatedCorrection(const std::string& name,
@@ -333,31 +270,19 @@ std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree&
                                  fmt::join(known, ", ")));
   }
   if (correction.kind == FaultKind::kCameraScale) {
-    for (TrialSummary& trial : measured.trials) {
-      const bool here = correction.trial.empty() || trial.trial.name == correction.trial;
-      if (here && trial.scale)
-        trial.scale->size = (1.0 + trial.scale->size) / correction.size - 1.0;
+    for (std::size_t t = 0; t < measured.trials.size(); ++t) {
+      TrialSummary& trial = measured.trials[t];
+      if (!correction.trial.empty() && trial.trial.name != correction.trial) continue;
+      if (trial.scale) trial.scale->size = (1.0 + trial.scale->size) / correction.size - 1.0;
+      for (FootRest& rest : measured.foot_rests) {
+        if (rest.trial != static_cast<int>(t)) continue;
+        for (Eigen::Matrix3Xd* at : {&rest.at, &rest.at_first, &rest.at_last}) {
+          *at /= correction.size;
+        }
+      }
     }
   }
   return InWords(correction, tree);
-}
-
-std::vector<std::string> UnconfirmedCorrections(const std::vector<std::string>& names,
-                                                const Project& project,
-                                                const Measurements& measured) {
-  std::vector<StatedCorrection> all;
-  for (const std::string& name : names) {
-    if (const auto one = ParseStatedCorrection(name, project.tree)) all.push_back(*one);
-  }
-  std::vector<std::string> objections;
-  std::set<std::pair<FaultKind, int>> judged;
-  for (const StatedCorrection& one : all) {
-    if (one.kind == FaultKind::kCameraScale || one.linkage >= 0) continue;
-    if (!judged.insert({one.kind, one.coordinate}).second) continue;
-    const std::string objection = DescribeUnconfirmed(one, all, project, measured);
-    if (!objection.empty()) objections.push_back(objection);
-  }
-  return objections;
 }
 
 void RefuseAccepted(const std::string& name, const std::set<std::string>& shown) {

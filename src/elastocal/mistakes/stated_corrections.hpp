@@ -57,8 +57,9 @@ std::string ApplyCorrection(const StatedCorrection& correction, const RobotTree&
 /// An objection for each joint for which an offset or gain is accepted in all trials for validation
 /// that show it (it moves, and a marker that it carries is seen), and in none of those of the
 /// estimate that show it. The log then had different states in the two, and no trial shows that the
-/// robot is now in the state of the estimate. `names` are those of `--accept`; names without a size
-/// are ignored.
+/// robot is now in the state of the estimate. The same for a scale of the cameras, unless reference
+/// lengths tell it in all trials for validation. `names` are those of `--accept`; names without a
+/// size are ignored.
 std::vector<std::string> UnconfirmedCorrections(const std::vector<std::string>& names,
                                                 const Project& project,
                                                 const Measurements& measured);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/math/input_error.hpp"
+#include "elastocal/math/numbers.hpp"
 #include "elastocal/project/project.hpp"
 #include "tests/expect_input_error.hpp"
 #include "tests/test_files.hpp"
@@ -60,10 +61,13 @@ TEST_F(StatedCorrections, AreDoneWhereTheySay) {
   EXPECT_DOUBLE_EQ(measured_.calibration.markers(0, 1), 1.0);
   measured_.trials.resize(1);
   measured_.trials[0].scale = MeasuredScale{0.25, 0.01};
+  measured_.foot_rests = {{.link = 0, .session = 0, .trial = 0}};
+  measured_.foot_rests[0].at = Eigen::Matrix3Xd::Ones(3, 1);
   EXPECT_EQ(Apply("scale=1.25"), "the cameras' positions were divided by 1.25");
   EXPECT_DOUBLE_EQ(measured_.calibration.markers(0, 1), 0.8);
   EXPECT_DOUBLE_EQ(measured_.validation.markers(0, 1), 1.6);
   EXPECT_DOUBLE_EQ(measured_.trials[0].scale->size, 0.0) << "what the reference lengths say then";
+  EXPECT_DOUBLE_EQ(measured_.foot_rests[0].at(2, 0), 0.8) << "where the feet stood";
 }
 
 // If a correction applies to all trials that judge, nothing confirms that the robot's log is right
@@ -100,6 +104,21 @@ TEST_F(StatedCorrections, OfAllTrialsThatJudgeConfirmNothing) {
   EXPECT_TRUE(objections({"gain:turret_joint=1.05"}).empty());  // a gain is wrong in the whole log
   EXPECT_TRUE(objections({"offset:turret_joint@a=2", "offset:turret_joint@b=2"}).empty());
   EXPECT_TRUE(objections({"sign:turret_joint"}).empty());
+  const std::vector<std::string> scale = objections({"scale:c=1.005", "scale:d=1.005"});
+  ASSERT_EQ(scale.size(), 1u);
+  EXPECT_EQ(scale[0].find("the scale of the cameras is corrected in all trials for validation (c, "
+                          "d), and not in those of the estimate (a, b)"),
+            0u)
+      << scale[0];
+  EXPECT_TRUE(objections({"scale:c=1.005"}).empty());  // trial d confirms the estimate
+  EXPECT_TRUE(objections({"scale=1.005"}).empty());
+  EXPECT_TRUE(objections({"scale:a=0.995", "scale:b=0.995"}).empty());
+  measured_.trials.resize(2);
+  for (const int k : {0, 1}) {
+    measured_.trials[Size(k)].trial.name = k == 0 ? "c" : "d";
+    measured_.trials[Size(k)].scale = MeasuredScale{0.0, 1e-4};
+  }
+  EXPECT_TRUE(objections({"scale:c=1.005", "scale:d=1.005"}).empty()) << "known lengths tell it";
   measured_.validation.markers.bottomRows(2).setConstant(std::nan(""));
   EXPECT_EQ(objections({in_c}).size(), 1u) << "d moves the joint, but no camera sees it there";
 }

@@ -99,6 +99,39 @@ std::vector<std::string> UnseenJoints(const Project& project, const Recording& r
   return unseen;
 }
 
+/// Joints that move markers which are seen in a trial that exercises the joint's chain.
+std::set<int> JointsJudged(const Project& project, const Recording& recording) {
+  std::set<int> judged;
+  for (const int trial : std::set<int>(recording.trial.begin(), recording.trial.end())) {
+    std::vector<int> postures;
+    for (int i = 0; i < recording.posture_count(); ++i) {
+      if (recording.trial[i] == trial) postures.push_back(i);
+    }
+    const std::set<int> shown =
+        JointsShownBy(project, SeenMarkers(SelectPostures(recording, postures)));
+    for (const Chain& chain : project.chains) {
+      if (!Exercises(recording.trials[trial], chain.name)) continue;
+      for (const int joint : JointsOf(project, chain)) {
+        if (shown.contains(joint)) judged.insert(joint);
+      }
+    }
+  }
+  return judged;
+}
+
+/// Joints of a chain that the estimate shows and held-out data do not judge.
+std::vector<std::string> UnjudgedJoints(const Project& project, const Recording& estimated,
+                                        const std::set<int>& judged, const Chain& chain) {
+  const std::set<int> shown = JointsShownBy(project, SeenMarkers(estimated));
+  std::vector<std::string> unjudged;
+  for (const int joint : JointsOf(project, chain)) {
+    if (shown.contains(joint) && !judged.contains(joint)) {
+      unjudged.push_back(project.tree.joints[joint].name);
+    }
+  }
+  return unjudged;
+}
+
 /// The trial that moves the joints of a chain most although it is not said to exercise it.
 std::string MovingTrial(const Project& project, const Chain& chain, const Recording& recording) {
   std::vector<int> coordinates;
@@ -131,6 +164,12 @@ Recording WithoutUnpredicted(Recording recording, const ObservationMask& predict
     }
   }
   return recording;
+}
+
+/// Whether there are trials for validation, usable or not.
+bool HasHeldOut(const std::vector<ChainCoverage>& coverage) {
+  return std::ranges::any_of(
+      coverage, [](const ChainCoverage& of) { return of.judged || !of.validation_trial.empty(); });
 }
 
 bool IsUnusable(const TrialSummary& trial) {
@@ -173,6 +212,7 @@ std::vector<ChainCoverage> FindCoverage(const Project& project, const Measuremen
                                         const ObservationMask* predicted) {
   const Recording judged =
       predicted ? WithoutUnpredicted(measured.validation, *predicted) : measured.validation;
+  const std::set<int> joints_judged = JointsJudged(project, judged);
   std::vector<ChainCoverage> coverage;
   for (const Chain& chain : project.chains) {
     std::vector<std::string> markers;
@@ -190,8 +230,12 @@ std::vector<ChainCoverage> FindCoverage(const Project& project, const Measuremen
                      {},
                      {},
                      MovingTrial(project, chain, measured.calibration),
+                     {},
                      {}};
     if (of.calibrated) of.unseen = UnseenJoints(project, measured.calibration, chain, markers);
+    if (of.calibrated && of.judged) {
+      of.unjudged = UnjudgedJoints(project, measured.calibration, joints_judged, chain);
+    }
     for (const TrialSummary& trial : measured.trials) {
       if (!Exercises(trial.trial, chain.name)) continue;
       if (trial.trial.kind != TrialKind::kCalibration) of.validation_trial = trial.trial.name;
@@ -227,8 +271,7 @@ Recording WithKnownStance(const Project& project, const Measurements& measured) 
 }
 
 void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict) {
-  const bool any_judged = std::any_of(coverage.begin(), coverage.end(),
-                                      [](const ChainCoverage& of) { return of.judged; });
+  const bool held_out = HasHeldOut(coverage);
   std::vector<std::string> objections;
   for (const ChainCoverage& of : coverage) {
     if (!of.calibrated && !of.refused.empty()) {
@@ -251,7 +294,13 @@ void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict)
           fmt::format("chain {}: {} not calibrated, because no marker beyond was seen", of.chain,
                       fmt::join(of.unseen, ", ")));
     }
-    if (of.calibrated && !of.judged && any_judged) {
+    if (!of.unjudged.empty()) {
+      verdict.remarks.push_back(
+          fmt::format("chain {}: {} not judged on held-out data, because no marker beyond was seen "
+                      "in the trials for validation that exercise it",
+                      of.chain, fmt::join(of.unjudged, ", ")));
+    }
+    if (of.calibrated && !of.judged && held_out) {
       verdict.remarks.push_back("chain " + of.chain +
                                 " was calibrated, but no trial for validation shows it: it is not "
                                 "judged on held-out data");
@@ -259,6 +308,18 @@ void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict)
   }
   // First, because missing measurements matter more than the fit of the others.
   verdict.objections.insert(verdict.objections.begin(), objections.begin(), objections.end());
+}
+
+std::vector<std::string> NotJudged(const std::vector<ChainCoverage>& coverage) {
+  std::vector<std::string> not_judged;
+  if (!HasHeldOut(coverage)) return not_judged;
+  for (const ChainCoverage& of : coverage) {
+    if (of.calibrated && !of.judged) not_judged.push_back("chain " + of.chain);
+    for (const std::string& joint : of.unjudged) {
+      if (std::ranges::find(not_judged, joint) == not_judged.end()) not_judged.push_back(joint);
+    }
+  }
+  return not_judged;
 }
 
 }  // namespace elastocal

@@ -29,6 +29,9 @@ struct ChainCoverage {
   std::string moving_trial;
   /// Joints that markers of the project show but no seen marker shows: they stay nominal.
   std::vector<std::string> unseen;
+  /// Joints of a calibrated and judged chain that seen markers of the estimate show, but none that
+  /// was predicted in the trials for validation that exercise them.
+  std::vector<std::string> unjudged;
 };
 
 /// Coverage of the chains that carry markers, in the project's order. `predicted` says which
@@ -50,7 +53,12 @@ Recording WithKnownStance(const Project& project, const Measurements& measured);
 /// Adds an objection for each chain that stays uncalibrated because its trials cannot be used (a
 /// user who records a chain expects its calibration), and for each chain that only trials for
 /// validation exercise (`chains` of a trial is probably wrong). Adds a remark for each calibrated
-/// chain that is not judged although others are, or that has joints of which no marker was seen.
+/// chain that is not judged although there are trials for validation, or that has joints of which
+/// no marker was seen, in the estimate or in those trials.
 void JudgeCoverage(const std::vector<ChainCoverage>& coverage, Verdict& verdict);
+
+/// What was calibrated and no held-out data judge: "chain head", or names of joints. Empty without
+/// trials for validation.
+std::vector<std::string> NotJudged(const std::vector<ChainCoverage>& coverage);
 
 }  // namespace elastocal

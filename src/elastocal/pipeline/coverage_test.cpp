@@ -178,6 +178,57 @@ TEST_F(CoverageOfChains, JointsBeyondAllSeenMarkersAreNamed) {
                                     " not calibrated, because no marker beyond was seen");
 }
 
+// In the trial for validation, the markers of the hand were hidden. Those of the upper arm judge
+// the joints before them, and no other.
+TEST_F(CoverageOfChains, JointsThatNoHeldOutMarkerShowsAreNamed) {
+  Project project = project_;
+  Marker upper = project.markers.front();
+  upper.name = "UPPER";
+  const int hand = FindLink(project.tree, "left_hand");
+  const std::vector<int> joints = JointsToBody(project.tree, project.tree.links[hand].body);
+  ASSERT_GE(joints.size(), 2u);
+  for (std::size_t l = 0; l < project.tree.links.size(); ++l) {
+    if (project.tree.links[l].body == joints[joints.size() - 2] + 1) {
+      upper.link = static_cast<int>(l);
+    }
+  }
+  project.markers.push_back(upper);
+  Measurements measured;
+  measured.calibration = Shown("left_arm");
+  measured.validation = Shown("left_arm");
+  for (const ChainCoverage& of : FindCoverage(project, measured)) {
+    EXPECT_TRUE(of.unjudged.empty()) << of.unjudged.front();
+  }
+  measured.validation.marker_names = {"UPPER"};
+  measured.validation.markers.setZero(1, 3);
+  const std::vector<ChainCoverage> coverage = FindCoverage(project, measured);
+  const std::string last = project.tree.joints[joints.back()].name;
+  EXPECT_EQ(NotJudged(coverage), std::vector<std::string>{last});
+  Verdict verdict;
+  JudgeCoverage(coverage, verdict);
+  ASSERT_EQ(verdict.remarks.size(), 1u);
+  EXPECT_EQ(verdict.remarks[0], "chain left_arm: " + last +
+                                    " not judged on held-out data, because no marker beyond was "
+                                    "seen in the trials for validation that exercise it");
+}
+
+TEST_F(CoverageOfChains, WhereNoTrialForValidationCanBePredictedThatIsSaid) {
+  Measurements measured;
+  measured.calibration = Shown("left_arm");
+  measured.validation = Shown("left_arm");
+  TrialSummary tour;
+  tour.trial = {.name = "tour", .kind = TrialKind::kRandom, .chains = {"left_arm"}};
+  measured.trials = {tour};
+  const ObservationMask none =
+      ObservationMask::Constant(1, measured.validation.marker_count(), false);
+  const std::vector<ChainCoverage> coverage = FindCoverage(project_, measured, &none);
+  EXPECT_EQ(NotJudged(coverage), std::vector<std::string>{"chain left_arm"});
+  Verdict verdict;
+  JudgeCoverage(coverage, verdict);
+  ASSERT_EQ(verdict.remarks.size(), 1u);
+  EXPECT_NE(verdict.remarks[0].find("it is not judged on held-out data"), std::string::npos);
+}
+
 TEST_F(CoverageOfChains, AChainWhoseJointsOthersMoveInValidationIsJudged) {
   const Project project = WithWholeLeftArm();
   Measurements measured;

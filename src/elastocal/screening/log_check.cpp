@@ -7,10 +7,8 @@
 #include <iterator>
 #include <map>
 #include <numeric>
-#include <stdexcept>
 #include <utility>
 
-#include "elastocal/math/input_error.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/statistics.hpp"
 #include "elastocal/measurement/recorded_joints.hpp"
@@ -271,24 +269,6 @@ std::string NameOfEntry(const LogSuspicion& suspicion, int entry, const RobotTre
   return LoggedPositionOf(tree, suspicion.linkage, entry).name;
 }
 
-/// The positions of a posture with the mistake corrected, which is one of a linkage's motors.
-Eigen::VectorXd WithoutMotorMistake(const LogSuspicion& suspicion, const RobotTree& tree,
-                                    Eigen::VectorXd q) {
-  const Linkage& linkage = tree.linkages[Size(suspicion.linkage)];
-  const auto undo = [&](Eigen::VectorXd& motors) {
-    if (suspicion.kind == LogContradiction::kSign) {
-      motors[suspicion.coordinate] *= -1.0;
-    } else {
-      std::swap(motors[suspicion.coordinate], motors[suspicion.other]);
-    }
-  };
-  if (!MoveMotors(tree, linkage, undo, q)) {
-    throw InputError("linkage '" + linkage.name +
-                     "' would not close without that mistake: " + NameOf(suspicion, tree));
-  }
-  return q;
-}
-
 }  // namespace
 
 std::vector<LogSuspicion> FindLogSuspicions(const ErrorModel& model, const Recording& recording) {
@@ -329,34 +309,6 @@ std::vector<LogSuspicion> PossibleLogMistakes(const Recording& recording, const 
   add(-1, moving, [&](int c) { return JointOfCoordinate(tree, c).type == JointType::kPrismatic; });
   signs.insert(signs.end(), exchanges.begin(), exchanges.end());
   return signs;
-}
-
-Recording WithoutMistake(const Recording& recording, const LogSuspicion& suspicion,
-                         const RobotTree& tree) {
-  Recording corrected = recording;
-  if (suspicion.kind == LogContradiction::kFrozen) {
-    std::vector<int> kept;
-    for (int i = 0; i < recording.posture_count(); ++i) {
-      if (!std::binary_search(suspicion.postures.begin(), suspicion.postures.end(), i)) {
-        kept.push_back(i);
-      }
-    }
-    return SelectPostures(recording, kept);
-  }
-  for (int i : suspicion.postures) {
-    if (i >= recording.posture_count()) {
-      throw std::invalid_argument("a suspicion of another recording");
-    }
-    if (suspicion.linkage >= 0) {
-      corrected.q.row(i) =
-          WithoutMotorMistake(suspicion, tree, corrected.q.row(i).transpose()).transpose();
-    } else if (suspicion.kind == LogContradiction::kSign) {
-      corrected.q(i, suspicion.coordinate) *= -1.0;
-    } else {
-      std::swap(corrected.q(i, suspicion.coordinate), corrected.q(i, suspicion.other));
-    }
-  }
-  return corrected;
 }
 
 std::string NameOf(const LogSuspicion& suspicion, const RobotTree& tree) {

@@ -41,8 +41,9 @@ std::vector<LogSuspicion> FindLogSuspicions(const ErrorModel& model, const Recor
 /// then exchanges, in both those of motors of linkages first. Empty for a recording of trials.
 std::vector<LogSuspicion> PossibleLogMistakes(const Recording& recording, const RobotTree& tree);
 
-/// The recording with the mistake corrected: positions changed, or the postures left out in which a
-/// joint was frozen. Throws InputError where the rods of a linkage would not close.
+/// The recording with the mistake corrected: positions and the directions of the last motions
+/// (Recording::approach) changed, or the postures left out in which a joint was frozen. Throws
+/// InputError where the rods of a linkage would not close.
 Recording WithoutMistake(const Recording& recording, const LogSuspicion& suspicion,
                          const RobotTree& tree);
 

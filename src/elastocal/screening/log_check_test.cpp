@@ -107,6 +107,24 @@ TEST_F(LogCheckTest, AReversedSignIsTold) {
   }
 }
 
+// Play and hysteresis depend on the direction from which a joint came.
+TEST_F(LogCheckTest, WhatIsUndoneIsUndoneInTheDirectionsOfMotion) {
+  NoteApproach(recording_);
+  const int a = Coordinate("left_2"), b = Coordinate("right_5");
+  Recording reversed = recording_, exchanged = recording_;
+  reversed.q.col(a) *= -1.0;
+  exchanged.q.col(a).swap(exchanged.q.col(b));
+  for (Recording* wrong : {&reversed, &exchanged}) {
+    NoteApproach(*wrong);
+    ASSERT_FALSE(wrong->approach == recording_.approach);
+    const auto found = FindLogSuspicions(robot_.model, *wrong);
+    ASSERT_FALSE(found.empty());
+    const Recording right = WithoutMistake(*wrong, found.front(), robot_.biped.tree);
+    EXPECT_TRUE(right.q == recording_.q);
+    EXPECT_TRUE(right.approach == recording_.approach);
+  }
+}
+
 TEST_F(LogCheckTest, AReversedSignIsToldOfAJointThatIsMountedFarOff) {
   const int ankle = Coordinate("right_5");
   Recording changed = recording_;

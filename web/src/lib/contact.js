@@ -7,27 +7,34 @@ export const thing = (contact) => contact.touches > 0 ? 'touches' : 'observation
 export const where = (contact) => contact.kfold ? `on ${thing(contact)} that were left out` : `on the ${thing(contact)} of the fit`;
 
 /** A clause with the errors before and after: of touches, or of the instrument that gained most. */
-function errorClause(contact) {
+function errorClause(contact, place = where(contact)) {
   const after = judged(contact);
   const before = after.uncalibrated;
   if (contact.touches > 0) {
-    return `The height of touches went from ${fixed(before.height_mm)} to ${fixed(after.height_mm)}\u00a0mm and their tilt from ${fixed(before.tilt_deg)} to ${fixed(after.tilt_deg)}\u00a0degrees, ${where(contact)}`;
+    return `The height of touches went from ${fixed(before.height_mm)} to ${fixed(after.height_mm)}\u00a0mm and their tilt from ${fixed(before.tilt_deg)} to ${fixed(after.tilt_deg)}\u00a0degrees, ${place}`;
   }
   const gains = instrumentErrors(contact).sort((a, b) => a.after / a.before - b.after / b.before);
   if (gains.length === 0) return 'The robot was calibrated';
   const [best] = gains;
-  return `What ${best.name} shows (${best.what}) went from ${significant(best.before)} to ${significant(best.after)}\u00a0${best.unit}, ${where(contact)}`;
+  return `What ${best.name} shows (${best.what}) went from ${significant(best.before)} to ${significant(best.after)}\u00a0${best.unit}, ${place}`;
 }
 
-/** {state, word, sentence}: the verdict on the calibration by its observations. */
-export function contactVerdict(summary) {
+/** {state, word, sentence}: the verdict on the calibration by its observations. `validation`: the result of `validate` in the same folder, if there is one. */
+export function contactVerdict(summary, validation) {
   const {contact} = summary;
-  const errors = errorClause(contact);
+  const confirmed = validation?.status === 'better' && validation.contact;
+  const errors = !contact.kfold && confirmed ? errorClause({...contact, kfold: validation.contact}, 'on another recording') : errorClause(contact);
   if (summary.status !== 'converged' || summary.objections?.length) {
     return {state: 'reject', word: 'Do not deploy', sentence: `${errors}, but the result must not be trusted.`, rest: summary.objections?.[0] ?? summary.status};
   }
   const rest = contact.holds_with ? `These figures hold with ${contact.holds_with}.` : '';
-  if (!contact.kfold) return {state: 'check', word: 'Validate first', sentence: `${errors}.`, rest};
+  const refuted = validation?.objections ?? [];
+  if (refuted.length > 0 || validation?.status === 'not better') {
+    return {state: 'reject', word: 'Do not deploy', sentence: `${errors}, but another recording refutes the calibration.`, rest: refuted[0] ?? 'The calibration does not help there.'};
+  }
+  if (!contact.kfold && !confirmed) return {state: 'check', word: 'Validate first', sentence: `${errors}.`, rest};
+  const remarks = summary.remarks ?? [];
+  if (remarks.length > 0) return {state: 'check', word: 'Deploy after a look at the remarks', sentence: `${errors}.`, rest};
   return {state: 'deploy', word: 'Deploy', sentence: `${errors}.`, rest};
 }
 

@@ -37,13 +37,22 @@ export function judgedErrors(summary) {
   return null;
 }
 
-/** Errors of a `validate` into the same folder, if its recording is another one and sound. */
+/** Errors of a `validate` into the same folder, outliers included, if its recording is another one and sound. */
 function onAnotherRecording(validation) {
-  const figures = validation?.rmse_3d_mm;
+  const figures = validation?.rmse_3d_mm_all ?? validation?.rmse_3d_mm;
   const after = figures?.urdf ?? figures?.calibrated;
   if (typeof figures?.uncalibrated !== 'number' || typeof after !== 'number') return null;
   if (validation.own_recording || validation.status === 'not converged' || (validation.mistakes ?? []).length > 0) return null;
   return {before: figures.uncalibrated, after, compensated: figures.calibrated, on: 'on another recording', better: validation.status === 'better', plausible: validation.status !== 'implausible'};
+}
+
+/** Why a `validate` into the same folder did not judge all of its recording; empty: it did. */
+export function openOfValidation(validation) {
+  const mistakes = validation?.mistakes ?? [];
+  if (mistakes.length > 0) return `The recording of the validation has a mistake or contradicts the calibration: ${mistakes[0]}.`;
+  const lost = validation?.not_judged ?? [];
+  if (lost.length > 0) return `The validation did not judge all trials: ${lost[0]}.`;
+  return validation?.status === 'not converged' ? 'The fit of the validation has not converged.' : '';
 }
 
 const deployable = (summary) => summary.status === 'converged' && (summary.objections ?? []).length === 0;
@@ -78,6 +87,11 @@ export function verdict(summary, validation) {
   const rest = open.length === 0
     ? 'The recording determines every identifiable parameter of the model.'
     : `The recording hardly tells ${list(open, 4)}: ${open.length === 1 ? 'this parameter has its most probable value' : 'these parameters have their most probable values'}.`;
+  const openQuestion = openOfValidation(validation);
+  if (openQuestion) {
+    return {state: 'check', word: 'Look at the validation before deploying', sentence: errors ? `Calibrated ${from}.` : 'Calibrated.',
+      rest: `${openQuestion} ${rest}`, errors};
+  }
   if (inFit && !another) {
     return {state: 'check', word: 'Validate before deploying', sentence: errors ? `Calibrated ${from}.` : 'Calibrated.',
       rest: `Nothing shows yet how well it predicts what it was not estimated from: cross-validate (--kfold 10), and validate on another recording. ${rest}`, errors};

@@ -13,8 +13,8 @@ function fact(value, unit, what) {
 
 /** The head of the page for a robot that touched tables or that instruments measured. */
 export function contactVerdictSection(report) {
-  const {summary} = report;
-  const result = contactVerdict(summary);
+  const {summary, validation} = report;
+  const result = contactVerdict(summary, validation);
   const after = judged(summary.contact);
   const {contact} = summary;
   const touched = contact.touches > 0;

@@ -15,9 +15,9 @@ const MODEL_WORDS = {
 };
 
 /** Explains the cells of the tables and the models in their columns. */
-function wordsOn(models) {
+export function wordsOn(models) {
   const paper = list(models.filter((m) => PAPER[m]).map((m) => `the ${modelName(m)} model ${PAPER[m]}`));
-  return 'Each cell has the root mean square (RMSE) of the distances between measured and predicted markers without outliers and, small and grey, the largest of them. ' +
+  return 'Each cell has the root mean square (RMSE) of the distances between measured and predicted markers and, small and grey, the largest of them. Those of the fit are without outliers, all others with them. ' +
     `Model ${list(models.filter((m) => MODEL_WORDS[m]).map((m) => MODEL_WORDS[m]))}.${paper ? ` The paper calls ${paper}.` : ''}`;
 }
 

@@ -24,6 +24,18 @@ test('objections reject', () => {
   assert.equal(verdict.rest, 'no better than before');
 });
 
+test('what the validation and the remarks say counts', () => {
+  assert.equal(contactVerdict(good, {status: 'better', objections: []}).state, 'deploy');
+  assert.equal(contactVerdict({...good, remarks: ['look']}).state, 'check');
+  const refuted = contactVerdict(good, {status: 'not better', objections: ['calibrated is no better than uncalibrated']});
+  assert.equal(refuted.state, 'reject');
+  assert.equal(refuted.rest, 'calibrated is no better than uncalibrated');
+  const fit = {...good, contact: {touches: 50, fit: good.contact.fit}};
+  const confirmed = contactVerdict(fit, {status: 'better', objections: [], contact: {...figures(2.5, 0.2), touches: 20}});
+  assert.equal(confirmed.state, 'deploy');
+  assert.match(confirmed.sentence, /12\.80 to 2\.50\u00a0mm .* on another recording\.$/);
+});
+
 const measured = {touches: 0, kfold: {
   instruments: [{name: 'imu', kind: 'inertial_unit', observations: 40, acceleration_m_per_s2: 0.03}, {name: 'hand', kind: 'pose', observations: 20, position_mm: 0.6, rotation_deg: 0.2}],
   uncalibrated: {instruments: [{name: 'imu', acceleration_m_per_s2: 0.06}, {name: 'hand', position_mm: 6, rotation_deg: 1}]}}};

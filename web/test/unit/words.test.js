@@ -5,6 +5,7 @@ import {test} from 'node:test';
 import {count, fixed, flatten, interval, list, plural, probability, significant, tick, withSd} from '../../src/lib/format.js';
 import {typeset} from '../../src/lib/groups.js';
 import {bestModel, judgedErrors, undetermined, verdict} from '../../src/lib/verdict.js';
+import {wordsOn} from '../../src/sections/models.js';
 
 const good = {
   status: 'converged', objections: [], remarks: [],
@@ -132,7 +133,25 @@ test('nothing is deployed by the fit alone, and what validate found on another r
   assert.equal(verdict(fit, {...validation, own_recording: true}).state, 'check');
   assert.equal(verdict(fit, {...validation, mistakes: ['labels exchanged']}).state, 'check');
   assert.equal(verdict(good, {...validation, status: 'not better'}).state, 'reject');
+  const all = {...validation, rmse_3d_mm_all: {uncalibrated: 6, calibrated: 0.9, urdf: 1.25}};
+  assert.equal(verdict(fit, all).sentence, 'Calibrated from 6.00 to 1.25\u00a0mm on another recording.');
   assert.equal(verdict(good, validation).errors.on, 'on motions that took no part in the estimate');
+});
+
+test('a validation that could not judge all of its recording leaves no plain "Deploy"', () => {
+  const validation = {status: 'better', own_recording: false, mistakes: [], not_judged: [], rmse_3d_mm: {uncalibrated: 4, calibrated: 0.2, urdf: 0.5}};
+  assert.equal(verdict(good, validation).state, 'deploy');
+  const lost = verdict(good, {...validation, not_judged: ['trial a cannot be used']});
+  assert.equal(lost.state, 'check');
+  assert.match(lost.rest, /did not judge all trials: trial a cannot be used\./);
+  const wrong = verdict(good, {...validation, status: 'implausible', mistakes: ['elbow: its sign is reversed']});
+  assert.equal(wrong.state, 'check');
+  assert.match(wrong.rest, /elbow: its sign is reversed\./);
+  assert.equal(verdict(good, {...validation, status: 'not converged'}).state, 'check');
+});
+
+test('figures are said to be without outliers where they are', () => {
+  assert.match(wordsOn(['geometric']), /Those of the fit are without outliers, all others with them\./);
 });
 
 test('marks of an axis are written as the numbers of the tables', () => {
