@@ -111,6 +111,10 @@ TEST_F(Runtime, WithoutSolesFeetAreTheLegsThatStood) {
     return error.first.starts_with("leg_left.") || error.first.starts_with("leg_right.");
   });
   EXPECT_TRUE(MakeRuntimeModel(project_, stored_).foot_names.empty());
+  project_.contact.emplace();
+  project_.contact->setup.feet = {{.link = FindLink(project_.tree, "left_sole_link")}};
+  EXPECT_EQ(MakeRuntimeModel(project_, stored_).foot_names, std::vector<std::string>{"leg_left"});
+  project_.contact.reset();
   stored_.soles = {{.leg = "leg_right", .changes = 2, .compliance = 1e-6, .sd = 1e-8}};
   EXPECT_EQ(MakeRuntimeModel(project_, stored_).foot_names, std::vector<std::string>{"leg_right"});
 }

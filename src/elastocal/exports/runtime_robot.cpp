@@ -185,14 +185,18 @@ ec_foot MakeFoot(const Project& project, const StoredRobot& robot, const Leg& le
   return foot;
 }
 
-/// The legs on which the robot can stand at run time: those with a sole in the project, or with a
-/// spring in the calibration, which only a leg has that stood. The lowest chain may be an arm that
-/// hangs down.
+/// The legs on which the robot can stand at run time: those with a sole in the project, or that
+/// stood when the robot touched a table (contact.feet), or with a spring in the calibration, which
+/// only a leg has that stood. The lowest chain may be an arm that hangs down.
 std::vector<Leg> StandingLegs(const Project& project, const StoredCalibration& calibration,
                               const StoredRobot& robot) {
   std::vector<Leg> legs = FindLegs(project.tree, ChainNames(project));
   std::erase_if(legs, [&](const Leg& leg) {
-    const bool stood = std::ranges::count(project.soles, leg.foot_link, &Sole::link) > 0 ||
+    const bool touching =
+        project.contact &&
+        std::ranges::count(project.contact->setup.feet, leg.foot_link, &ContactFoot::link) > 0;
+    const bool stood = touching ||
+                       std::ranges::count(project.soles, leg.foot_link, &Sole::link) > 0 ||
                        std::ranges::count(robot.model.legs, leg.foot_link, &SupportLeg::link) > 0 ||
                        std::ranges::count(calibration.soles, leg.chain, &SoleSpring::leg) > 0;
     return !stood;
