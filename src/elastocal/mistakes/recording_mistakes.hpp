@@ -73,7 +73,8 @@ std::vector<RecordingMistake> FindMistakesBy(
 /// them, and returns descriptions: `sign:JOINT`, `exchange:JOINT,JOINT`, `frozen:JOINT` (its
 /// postures are left out), `labels:NAME,NAME` of two clusters or markers, `rows:+1` of a table
 /// whose markers belong to the joints of the next row. Names with a size (ParseStatedCorrection:
-/// `gain:JOINT=1.05` ...) are applied as they say. Throws InputError for a name of which the
+/// `gain:JOINT=1.05` ...) are applied after the others, as they say: the objections that state them
+/// are of a recording without those mistakes. Throws InputError for a name of which the
 /// recording shows nothing; the message lists those that it shows.
 std::vector<std::string> AcceptMistakes(const Project& project,
                                         const std::vector<std::string>& accepted,
