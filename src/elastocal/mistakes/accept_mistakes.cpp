@@ -9,7 +9,6 @@
 #include "elastocal/mistakes/stated_corrections.hpp"
 #include "elastocal/mistakes/tried_correction.hpp"
 #include "elastocal/screening/log_check.hpp"
-#include "elastocal/screening/postures_against.hpp"
 
 namespace elastocal {
 namespace {
@@ -89,8 +88,8 @@ class Acceptance {
     return std::nullopt;
   }
 
-  /// Corrects a sign or an exchange in all trials but those that would then show it, or whose
-  /// markers are nearer to a sign as logged, because the logging program assigns columns once.
+  /// Corrects a sign or an exchange in all trials but those that would then show it, because the
+  /// logging program assigns columns once.
   /// Returns whether it did; not in a table, nor where rods would not close.
   bool UndoInTrials(const ErrorModel& nominal, const std::string& name, Recording& recording) {
     if (recording.trials.empty()) return false;
@@ -104,7 +103,6 @@ class Acceptance {
         for (const LogSuspicion& other : FindLogSuspicions(nominal, in_all)) {
           if (NameOf(other, project_.tree) == name) Remove(other.postures, one.postures);
         }
-        Remove(PosturesAgainst(nominal, one, recording), one.postures);
         recording = WithoutMistake(recording, one, project_.tree);
       } catch (const InputError&) {
         return false;

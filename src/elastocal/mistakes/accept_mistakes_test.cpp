@@ -55,18 +55,7 @@ class AcceptedMistakes : public testing::Test {
   Eigen::MatrixXd truth_;
 };
 
-// The gain was told without the exchange, so that it is that of the right column.
-TEST_F(AcceptedMistakes, AGainIsUndoneAfterAnExchange) {
-  Eigen::MatrixXd& q = measured_.calibration.q;
-  const int a = CoordinateOf("turret_joint"), b = CoordinateOf("elbow_joint");
-  q.col(a) *= 1.05;
-  q.col(a).swap(q.col(b));
-  const std::string gain = "gain:turret_joint=1.05";
-  const std::string exchange = "exchange:elbow_joint,turret_joint";
-  EXPECT_LT((Accepted({gain, exchange}) - truth_).norm(), 1e-9);
-  EXPECT_LT((Accepted({exchange, gain}) - truth_).norm(), 1e-9);
-}
-
+// The offset was told without the sign, so that it is that of the right positions.
 TEST_F(AcceptedMistakes, AnOffsetIsUndoneAfterASign) {
   Eigen::MatrixXd& q = measured_.calibration.q;
   const int a = CoordinateOf("elbow_joint");
@@ -88,22 +77,6 @@ TEST_F(AcceptedMistakes, AnOffsetFromAPostureOnIsUndoneAfterAFrozenPart) {
   const Eigen::MatrixXd undone = Accepted({offset, "frozen:elbow_joint"});
   ASSERT_EQ(undone.rows(), kPlayed - frozen);
   EXPECT_LT((undone.bottomRows(12) - truth_.bottomRows(12)).norm(), 1e-9);
-}
-
-// In one trial the sign is reversed while the joint moves, in another while it rests. In a third,
-// where it also rests, the sign is right, which only the markers tell.
-TEST_F(AcceptedMistakes, ASignStaysWhereTheMarkersOfARestingJointShowItAsLogged) {
-  Recording& recording = measured_.calibration;
-  recording.trials = {{"swing", TrialKind::kCalibration, {project_.chains.front().name}},
-                      {"wrong", TrialKind::kCalibration, {project_.chains.front().name}},
-                      {"right", TrialKind::kCalibration, {project_.chains.front().name}}};
-  std::fill(recording.trial.begin() + 8, recording.trial.begin() + 16, 1);
-  std::fill(recording.trial.begin() + 16, recording.trial.end(), 2);
-  const int a = CoordinateOf("elbow_joint");
-  recording.q.col(a).tail(16).setConstant(0.25);
-  See();
-  recording.q.col(a).head(16) *= -1.0;
-  EXPECT_LT((Accepted({"sign:elbow_joint"}) - truth_).norm(), 1e-9);
 }
 
 }  // namespace
