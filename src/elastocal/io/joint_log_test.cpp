@@ -129,6 +129,7 @@ TEST(JointLog, InfoKnowsTabsAndByteOrderMarks) {
   EXPECT_EQ(format("time\telbow_joint\n0\t0.1\n0.1\t0.2\n"), "joint log (CSV)");
   // A table whose time has another name is no Qualisys TSV.
   EXPECT_EQ(format("Time\telbow_joint\n0\t0.1\n0.1\t0.2\n"), "table (CSV)");
+  EXPECT_EQ(format("TIME\telbow_joint\n0\t0.1\n0.1\t0.2\n"), "table (CSV)");
   const std::string rows = "0\t1\t2\t3\n0.1\t4\t5\t6\n";
   EXPECT_EQ(format("Time\tA X\tA Y\tA Z\n" + rows), "Qualisys TSV");
   EXPECT_EQ(format("\xEF\xBB\xBFMARKER_NAMES\tA\nTime\tA X\tA Y\tA Z\n" + rows), "Qualisys TSV");

@@ -174,6 +174,7 @@ bool BeginsLikeQtmTsv(std::string_view head) {
   std::string_view line = FirstLine(head);
   if (line.find('\t') == std::string_view::npos) return false;
   std::string_view cell = TakeCell(line);
+  if (cell == "TIME" || cell == "T") return false;  // no keys of such files, but names of a time
   if (!IsLeadingColumn(cell)) return cell.ends_with(" X") || IsQtmKey(cell);
   while (IsLeadingColumn(cell) && !line.empty()) cell = TakeCell(line);
   return IsLeadingColumn(cell) || cell == "X" || cell.ends_with(" X");
