@@ -56,6 +56,18 @@ class AcceptedMistakes : public testing::Test {
 };
 
 // The offset was told without the sign, so that it is that of the right positions.
+// The gain was told without the exchange, so that it is that of the right column.
+TEST_F(AcceptedMistakes, AGainIsUndoneAfterAnExchange) {
+  Eigen::MatrixXd& q = measured_.calibration.q;
+  const int a = CoordinateOf("turret_joint"), b = CoordinateOf("elbow_joint");
+  q.col(a) *= 1.05;
+  q.col(a).swap(q.col(b));
+  const std::string gain = "gain:turret_joint=1.05";
+  const std::string exchange = "exchange:elbow_joint,turret_joint";
+  EXPECT_LT((Accepted({gain, exchange}) - truth_).norm(), 1e-9);
+  EXPECT_LT((Accepted({exchange, gain}) - truth_).norm(), 1e-9);
+}
+
 TEST_F(AcceptedMistakes, AnOffsetIsUndoneAfterASign) {
   Eigen::MatrixXd& q = measured_.calibration.q;
   const int a = CoordinateOf("elbow_joint");
