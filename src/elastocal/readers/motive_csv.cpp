@@ -215,7 +215,7 @@ class MotiveReader {
       lines_.Fail("found " + std::to_string(count_) + " frames; Total Exported Frames is " +
                   FormatNumber(*stated));
     }
-    if (!lines_.blank() && EndsWithinALine(source_)) RemoveLastFrame();
+    if (count_ > 1 && !lines_.blank() && EndsWithinALine(source_)) RemoveLastFrame();
   }
 
   void RemoveLastFrame() {

@@ -252,7 +252,7 @@ MarkerTrajectories ReadQtmTsv(const std::filesystem::path& file, std::vector<std
   const ByteSource source = ByteSource::Open(file);
   SourceStream stream(source);
   MarkerTrajectories trajectories = ParseQtmStream(stream, source.name(), notes);
-  if (EndsWithinALine(source)) {
+  if (trajectories.positions.rows() > 1 && EndsWithinALine(source)) {
     trajectories.positions.conservativeResize(trajectories.positions.rows() - 1, Eigen::NoChange);
     if (notes != nullptr) notes->emplace_back(kCutRow);
   }

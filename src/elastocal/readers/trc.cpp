@@ -39,7 +39,7 @@ class TrcReader {
       throw InputError(source_.name() + ": found " + std::to_string(count) +
                        " frames; NumFrames is " + FormatNumber(*stated));
     }
-    if (!lines_.blank() && EndsWithinALine(source_)) {
+    if (count > 1 && !lines_.blank() && EndsWithinALine(source_)) {
       rows.RemoveLast(names_.size());
       file.notes.emplace_back(kCutRow);
     }
