@@ -10,24 +10,25 @@
 namespace elastocal::cli {
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
+constexpr double kDegreesOfLimit = 180.0 / M_PI;
 
 }  // namespace
 
 CorrectionLimits::CorrectionLimits() {
   const CompensatorOptions own;
-  most_bend_deg = own.largest_turn_rad * kDegrees;
+  most_bend_deg = own.largest_turn_rad * kDegreesOfLimit;
   most_bend_mm = 1e3 * own.largest_shift_m;
-  most_change_deg = own.largest_correction_rad * kDegrees;
+  most_change_deg = own.largest_correction_rad * kDegreesOfLimit;
 }
 
 CompensatorOptions CorrectionLimits::Of() const {
   const CorrectionLimits own;  // what was not given keeps its bits
   CompensatorOptions options;
-  if (most_bend_deg != own.most_bend_deg) options.largest_turn_rad = most_bend_deg / kDegrees;
+  if (most_bend_deg != own.most_bend_deg)
+    options.largest_turn_rad = most_bend_deg / kDegreesOfLimit;
   if (most_bend_mm != own.most_bend_mm) options.largest_shift_m = 1e-3 * most_bend_mm;
   if (most_change_deg != own.most_change_deg) {
-    options.largest_correction_rad = most_change_deg / kDegrees;
+    options.largest_correction_rad = most_change_deg / kDegreesOfLimit;
   }
   return options;
 }
