@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "elastocal/drafting/draft.hpp"
+#include "elastocal/exports/runtime_robot.hpp"
 #include "elastocal/math/numbers.hpp"
 #include "elastocal/math/rotation_vector.hpp"
 #include "elastocal/motion/stabiliser.hpp"
-#include "elastocal/planning/compensate_motion.hpp"
 #include "elastocal/planning/plan_motion.hpp"
 #include "elastocal/planning/project_motion.hpp"
 #include "elastocal/planning/simulate_experiment.hpp"
@@ -180,7 +180,7 @@ TEST_F(Quadruped, ARecordingInWhichItFallsIsRefused) {
 }
 
 TEST_F(Quadruped, CommandsAreNotCorrected) {
-  ExpectInputError([&] { CompensateMotion(project_, {}, plan_.whole.motion); },
+  ExpectInputError([&] { MakeRuntimeModel(project_, {}); },
                    {"project.yaml", "front_left_foot", "ball"});
 }
 

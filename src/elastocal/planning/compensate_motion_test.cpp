@@ -209,8 +209,16 @@ TEST(CompensateMotion, CorrectionsKeepTheSpeedOfTheJoints) {
 
 /// The small humanoid, whose right hip follows the left one, at rest for two seconds.
 struct SharedHips {
+  SharedHips() {
+    for (const char* sole : {"left_sole", "right_sole"}) {
+      project.soles.push_back({.link = FindLink(project.tree, sole),
+                               .lower = Eigen::Vector2d(-0.05, -0.03),
+                               .upper = Eigen::Vector2d(0.09, 0.03)});
+    }
+    plan = RestOnSoles(project);
+  }
   Project project = ReadProject(SourceFile("tests/robots/mini_humanoid_project.yaml"));
-  JointMotion plan = RestOnSoles(project);
+  JointMotion plan;
 };
 
 // The shared coordinate carries both hips' torques; each spring feels its own.
